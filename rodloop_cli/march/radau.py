@@ -1,0 +1,120 @@
+"""One step of Radau IIA on the constrained equations, with an embedded estimate of the position error.
+
+With X the stage positions, U = (A^-1/Δt)(X - x0) and W = (A^-1/Δt)(U - u0): the constraint of inextensibility enters as part of the
+box system, never differentiated.
+"""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from rodloop_cli.errors import SingularSystem
+from rodloop_cli.march.predictor import predict
+from rodloop_cli.march.stages import Instant, Linearisation, StageModes, solve_stages
+from rodloop_cli.march.state import State, Step
+from rodloop_cli.march.work import Work
+from rodloop_cli.numerics.radau import RadauIIA, radau_iia
+from rodloop_cli.physics.equations import BoxEquations, Fields, Motion
+
+REUSE_BELOW = 0.05
+"""A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
+
+STARTING_ACCURACY = 1e-8
+
+ITERATION_ERROR = 0.03
+"""Newton's share of the position error allowed in a step."""
+
+
+class RadauStepper:
+    """Makes steps; remembers the linearisation and the last step, which only speed it up."""
+
+    def __init__(self, stages: int, work: Work) -> None:
+        self.method = radau_iia(stages)
+        self.work = work
+        self._modes = _modes(stages)
+        self._linearisation: Linearisation | None = None
+        self._contraction = 1.0
+
+    @property
+    def reusable_size(self) -> float | None:
+        """Length of step for which the present linearisation still serves."""
+        if self._linearisation is None or self._contraction > REUSE_BELOW:
+            return None
+        return self._linearisation.step
+
+    def step(self, state: State, last: Step | None, size: float, allowance: float) -> Step | None:
+        """A step of length ``size`` whose ``error`` is measured against ``allowance``; None if Newton fails."""
+        method, equations = self.method, state.equations
+        motion = _motion(method, state, size)
+        guess = predict(state, last, method.nodes, size)
+
+        def renew(fields: Fields, trusted: bool) -> Linearisation:
+            self.work.factorizations += 1
+            instant = Instant.of_stage(fields, method.stages // 2 if method.stages > 1 else 0, None if trusted else state.force)
+            return Linearisation(equations, self._modes, size, instant)
+
+        try:
+            solution, self._linearisation = solve_stages(
+                equations, motion, guess, self._kept(equations, size), renew, ITERATION_ERROR * allowance
+            )
+        except SingularSystem:
+            solution, self._linearisation = None, None
+        if solution is None:
+            self._linearisation = None
+            return None
+        self.work.newton_iterations += solution.iterations
+        self._contraction = solution.contraction
+        rates = np.tensordot(motion.rates, solution.unknowns - state.unknowns, 1)
+        error = self._error(state, solution.fields, size) / allowance
+        return Step(state, size, method.nodes, solution.unknowns, rates, solution.fields, solution.iterations, error)
+
+    def _kept(self, equations: BoxEquations, size: float) -> Linearisation | None:
+        kept = self._linearisation
+        if kept is None or kept.equations is not equations or size != self.reusable_size:
+            return None
+        return kept
+
+    def _error(self, state: State, fields: Fields, size: float) -> float:
+        """The embedded estimate, in positions.
+
+        The embedded formula needs the acceleration a0 at the start but not the force: the constraint absorbs it. What is left is the
+        real box system, already factored, under the force density -ρ[λ r_X + Σ e z_U/Δt + a0], r_X = Σ e z_X/Δt + u0.
+        """
+        assert self._linearisation is not None
+        weights, rate = self.method.embedded, self.method.eigenvalues[0].real / size
+        moved = fields.position[..., :-1] - state.position[:, None, :, :-1]
+        gained = fields.velocity[..., :-1] - state.velocity[:, None, :, :-1]
+        drift = np.einsum("k,ckni->cni", weights / size, moved) + state.velocity[..., :-1]
+        push = rate * drift + np.einsum("k,ckni->cni", weights / size, gained) + state.acceleration[..., :-1]
+        equations = state.equations
+        right_hand_side = equations.load_response(
+            fields.cosine[-1], fields.sine[-1], -equations.mesh.density[:, None] * push
+        )
+        correction = self._linearisation.systems.solve_real(right_hand_side)
+        return float(np.abs(equations.displacement(fields.cosine[-1], fields.sine[-1], correction)).max())
+
+
+@cache
+def _modes(stages: int) -> StageModes:
+    method = radau_iia(stages)
+    return StageModes(method.eigenvalues, method.to_modes, method.from_modes)
+
+
+def _motion(method: RadauIIA, state: State, size: float) -> Motion:
+    rates = method.inverse / size
+    past = -rates.sum(axis=1)[None, :, None, None]
+    return Motion(rates, past * state.position[:, None], past * state.velocity[:, None])
+
+
+def started(state: State, size: float) -> tuple[State, Step]:
+    """The state at rest with the acceleration and the forces that hold just after the load is switched on.
+
+    They are those of one backward Euler step of negligible length ``size``, which is returned too.
+    Raises SingularSystem if that step cannot be solved.
+    """
+    step = RadauStepper(1, Work()).step(state, None, size, STARTING_ACCURACY)
+    if step is None:
+        raise SingularSystem("the equations just after the load is switched on cannot be solved")
+    end = step.end
+    return replace(state, acceleration=end.acceleration, force=end.force), step

@@ -1,0 +1,138 @@
+"""The equations of all stages of one step, solved by a simplified Newton iteration.
+
+The stages couple through the accelerations alone, by R², R the matrix of rates. In the eigenvectors of R they fall apart into one real
+and some complex box systems with λ² ρ in place of the inertia and λ ζ in place of the drag: the linearisation at one
+instant serves all of them [Hairer & Wanner, Solving ODEs II, IV.8].
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rodloop_cli.errors import SingularSystem
+from rodloop_cli.march.state import State
+from rodloop_cli.numerics.condensed import CondensedSystems
+from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.physics.equations import NODAL, X, Y, BoxEquations, Fields, Motion
+
+Complex = NDArray[np.complex128]
+
+SLOW = 0.3
+"""Contraction above which the linearisation is renewed once in the middle of an iteration."""
+
+MAX_ITERATIONS = 8
+
+CERTAIN = 0.05
+"""A correction this much smaller than the target ends the iteration whatever the contraction."""
+
+
+@dataclass(frozen=True, eq=False)
+class StageModes:
+    """Eigen-decomposition of the matrix of rates (before division by the step): see `RadauIIA` for the shapes."""
+
+    eigenvalues: Complex
+    to_modes: Complex
+    from_modes: Complex
+
+
+class Solution(NamedTuple):
+    """Stage values that solve the equations: unknowns (s, n, 6 + m), the fields, the iterations and their contraction."""
+
+    unknowns: Array
+    fields: Fields
+    iterations: int
+    contraction: float
+
+
+class Linearisation:
+    """The factored systems of one instant and one matrix of rates."""
+
+    def __init__(self, equations: BoxEquations, modes: StageModes, step: float, instant: "Instant") -> None:
+        self.equations, self.step, self._modes = equations, step, modes
+        parts = equations.linearise(*instant)
+        rate = (modes.eigenvalues / step)[:, None, None, None]
+        responses = parts[0] + rate**2 * parts[1]
+        if len(parts) > 2:
+            responses += rate * parts[2]
+        if not np.isfinite(responses.view(float)).all():
+            raise SingularSystem("the linearised system is not finite")
+        try:
+            self.systems = CondensedSystems(responses, NODAL)
+        except np.linalg.LinAlgError as error:
+            raise SingularSystem("a cell's equations are singular") from error
+
+    def correction(self, residual: Array) -> Array:
+        """Newton's correction (s, n, 6 + m) of the stages."""
+        stages = len(residual)
+        coordinates = self._modes.to_modes @ residual.reshape(stages, -1)
+        solved = self.systems.solve(coordinates.reshape(-1, *residual.shape[1:]))
+        correction = (self._modes.from_modes @ solved.reshape(len(solved), -1)).real
+        return correction.reshape(residual.shape)
+
+
+class Instant(NamedTuple):
+    """Where the equations are linearised: cosine, sine (n, m); force, velocity (2, n, m)."""
+
+    cosine: Array
+    sine: Array
+    force: Array
+    velocity: Array
+
+    @classmethod
+    def of_stage(cls, fields: Fields, stage: int, force: Array | None = None) -> "Instant":
+        """The instant of one stage; ``force`` (2, n, m + 1) where the stage's own is not to be trusted yet."""
+        chosen = fields.force[:, stage] if force is None else force
+        return cls(fields.cosine[stage], fields.sine[stage], chosen[..., :-1], fields.velocity[:, stage, :, :-1])
+
+
+def solve_stages(
+    equations: BoxEquations,
+    motion: Motion,
+    guess: Array,
+    linearisation: Linearisation | None,
+    renew: Callable[[Fields, bool], Linearisation],
+    target: float,
+) -> tuple[Solution | None, Linearisation]:
+    """Iterate until the position error is below ``target``, judged by the contraction; None if it does not contract.
+
+    ``renew(fields, trusted)`` makes a linearisation at the current fields, whose forces are trusted only after an iteration: those of
+    a guess contain its accelerations, which amplify its error by Δt⁻².
+    """
+    unknowns, fields = guess, equations.fields(guess, motion)
+    renewed = linearisation is None
+    linearisation = linearisation or renew(fields, False)
+    last, contraction = np.inf, 0.0
+    longest = float(equations.mesh.lengths.max())
+    for iteration in range(1, MAX_ITERATIONS + 1):
+        correction = linearisation.correction(equations.residual(unknowns, fields))
+        unknowns = unknowns + correction
+        fields = equations.fields(unknowns, motion)
+        size = position_size(correction, longest)
+        if not np.isfinite(size):
+            break
+        if size < CERTAIN * target:
+            return Solution(unknowns, fields, iteration, contraction), linearisation
+        if iteration > 1:
+            contraction = size / last
+            if contraction < 1 and size * contraction / (1 - contraction) < target:
+                return Solution(unknowns, fields, iteration, contraction), linearisation
+            if SLOW < contraction < 2 and not renewed:
+                linearisation, renewed = renew(fields, True), True
+            elif contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration):
+                break
+        last = size
+    return None, linearisation
+
+
+def position_size(correction: Array, longest_cell: float) -> float:
+    """How far a correction (..., n, 6 + m) moves the rod: nodes directly, points inside a cell by its turning."""
+    nodes = correction[..., X : Y + 1]
+    angles = correction[..., NODAL:]
+    return max(float(np.abs(nodes).max()), float(np.abs(angles).max()) * longest_cell)
+
+
+def _hopeless(size: float, contraction: float, target: float, left: int) -> bool:
+    return bool(contraction**left * size / (1 - contraction) > target)

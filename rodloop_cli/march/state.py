@@ -1,0 +1,68 @@
+"""What passes between time steps: the state of the loop, and one accepted step."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.physics.equations import BoxEquations, Fields
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """The loop at one time on one mesh.
+
+    unknowns, rates: (n, 6 + m) as in `physics.equations`, and their time derivatives;
+    position, velocity, acceleration, force: (2, n, m + 1) at the Gauss points and the right end of each cell.
+    """
+
+    time: float
+    equations: BoxEquations
+    unknowns: Array
+    rates: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    force: Array
+
+    @classmethod
+    def at_rest(cls, equations: BoxEquations, unknowns: Array, time: float = 0.0) -> "State":
+        """Zero velocity; acceleration and forces are not known yet."""
+        fields = equations.fields(unknowns[None], None)
+        still = np.zeros_like(fields.position[:, 0])
+        return cls(
+            time, equations, unknowns, np.zeros_like(unknowns), fields.position[:, 0], still, still, fields.force[:, 0]
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One accepted step: the start, the stages, the end.
+
+    nodes: (s,) stage times in (0, 1], the last 1;  unknowns, rates: (s, n, 6 + m);  fields at the stages;
+    error: estimated position error over its allowance (0 where the scheme has no estimate).
+    """
+
+    start: State
+    size: float
+    nodes: Array
+    unknowns: Array
+    rates: Array
+    fields: Fields
+    newton_iterations: int
+    error: float
+
+    @property
+    def end(self) -> State:
+        """The state at the last stage."""
+        fields = self.fields
+        return State(
+            self.start.time + self.size,
+            self.start.equations,
+            self.unknowns[-1],
+            self.rates[-1],
+            fields.position[:, -1],
+            fields.velocity[:, -1],
+            fields.acceleration[:, -1],
+            fields.force[:, -1],
+        )

@@ -1,0 +1,48 @@
+"""Energies of the loop and the power the film takes, as in Eqs. (15) and (16); B1/R and its rate, absolute.
+
+All integrals use the Gauss weights of the collocation, which makes them as accurate as the nodal values. Arrays carry any leading
+dimensions …; on Gauss points they end in (n, m).
+"""
+
+import numpy as np
+
+from rodloop_cli.numerics.gauss import GaussRule
+from rodloop_cli.physics.equations import Load
+from rodloop_cli.physics.rod import Array, Mesh
+
+
+class Quadrature:
+    """Integrals around the loop of quantities given at the Gauss points."""
+
+    def __init__(self, mesh: Mesh, rule: GaussRule) -> None:
+        self._weights = mesh.lengths[:, None] * rule.weights
+        self._mesh = mesh
+
+    def integral(self, density: Array) -> Array:
+        """∮ density ds for density (…, n, m)."""
+        integral: Array = np.einsum("...nm,nm->...", density, self._weights)
+        return integral
+
+    def area(self, position: Array, tangent: Array) -> Array:
+        """½ ∮ (x sin θ - y cos θ) ds for position, tangent (2, …, n, m); negative where the loop is inside out."""
+        return self.integral(0.5 * (position[0] * tangent[1] - position[1] * tangent[0]))
+
+    def area_rate(self, velocity: Array, tangent: Array) -> Array:
+        """∮ (u sin θ - v cos θ) ds: how fast the area grows."""
+        return self.integral(velocity[0] * tangent[1] - velocity[1] * tangent[0])
+
+    def bending(self, moment: Array) -> Array:
+        """∮ M²/(2b) ds for moment (…, n, m)."""
+        return self.integral(0.5 * moment**2 / self._mesh.stiffness[:, None])
+
+    def kinetic(self, velocity: Array) -> Array:
+        """∮ ρ v²/2 ds for velocity (2, …, n, m)."""
+        return self.integral(0.5 * self._mesh.density[:, None] * (velocity**2).sum(axis=0))
+
+    def dissipation_rate(self, velocity: Array, tangent: Array, load: Load) -> Array:
+        """ζ⊥ ∮ (v_n² + γ v_t²) ds, Eq. (16)."""
+        if load.zeta_perp == 0:
+            return np.zeros(velocity.shape[1:-2])
+        along = (velocity * tangent).sum(axis=0)
+        density = (velocity**2).sum(axis=0) + (load.gamma - 1) * along**2
+        return load.zeta_perp * self.integral(density)

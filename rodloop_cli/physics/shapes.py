@@ -1,0 +1,150 @@
+"""Shapes of the unloaded loop: tangent angle along the arclength, and its perturbation.
+
+A base shape displaced along its outward normal by δ(s) turns its tangent by -atan2(δ', 1 + κδ) and stretches by hypot(1 + κδ, δ').
+The stretch is taken out by a new arclength, so that the perturbed shape is a state of the inextensible rod: a perturbation that keeps
+the parameter would be thrown back by the constraint in the first time step, with velocities ε/Δt.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rodloop_cli.numerics.gauss import gauss_rule
+from rodloop_cli.physics.rod import LENGTH, Array, Rod
+
+Along = Callable[[Array], Array]
+
+QUADRATURE_POINTS = 16
+CELLS_PER_WAVE = 2
+DIFFERENCE = 1e-6
+"""For the curvature of a perturbed shape, which serves as a first guess of the moment alone."""
+
+
+@dataclass(frozen=True)
+class Wave:
+    """One term amplitude·cos(mode·s - phase) of the outward displacement."""
+
+    mode: int
+    amplitude: float
+    phase: float = 0.0
+
+
+def random_waves(amplitude: float, modes: tuple[int, int], seed: int) -> tuple[Wave, ...]:
+    """Normal coefficients and uniform phases over the inclusive range of modes, scaled to max|δ| = amplitude."""
+    generator = np.random.default_rng(seed)
+    numbers = np.arange(modes[0], modes[1] + 1)
+    coefficients = generator.normal(size=len(numbers))
+    phases = generator.uniform(0.0, 2 * np.pi, size=len(numbers))
+    waves = tuple(Wave(int(n), float(a), float(b)) for n, a, b in zip(numbers, coefficients, phases, strict=True))
+    fine = np.linspace(0, LENGTH, 64 * modes[1], endpoint=False)
+    scale = amplitude / np.abs(displacement(waves, fine)).max()
+    return tuple(Wave(w.mode, w.amplitude * float(scale), w.phase) for w in waves)
+
+
+def displacement(waves: tuple[Wave, ...], s: Array) -> Array:
+    """δ(s), outward."""
+    return sum((w.amplitude * np.cos(w.mode * s - w.phase) for w in waves), np.zeros_like(s))
+
+
+def slope(waves: tuple[Wave, ...], s: Array) -> Array:
+    """δ'(s)."""
+    return sum((-w.mode * w.amplitude * np.sin(w.mode * s - w.phase) for w in waves), np.zeros_like(s))
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A closed shape of length 2π: tangent angle and curvature along s; smooth between ``breaks``, which include 0 and 2π.
+
+    centre: of the material points, each weighted by arclength.
+    """
+
+    theta: Along
+    curvature: Along
+    breaks: Array
+    centre: Array
+
+
+def circle() -> Shape:
+    """x = sin s, y = -cos s."""
+    return Shape(lambda s: s, np.ones_like, np.array([0.0, LENGTH]), np.zeros(2))
+
+
+def perturbed(base: Shape, waves: tuple[Wave, ...], rod: Rod) -> Shape:
+    """The base displaced by the waves and given a new arclength.
+
+    A circle is scaled as a whole, and its arclength counted from s = 0. Where the base has kinks of curvature at stiffness junctions,
+    each segment is scaled by itself, so that the kinks stay on the junctions (the gap that this opens is closed when the shape is laid
+    on a mesh).
+    """
+    if not waves:
+        return base
+    ends = rod.ends if rod.has_stiffness_contrast else np.array([LENGTH])
+    arclength = _NewArclength(base, waves, ends)
+
+    def turned(s: Array) -> Array:
+        old = arclength.old(s)
+        delta, delta_slope = displacement(waves, old), slope(waves, old)
+        return base.theta(old) - np.arctan2(delta_slope, 1 + base.curvature(old) * delta)
+
+    def curvature(s: Array) -> Array:
+        inside = np.clip(s, DIFFERENCE, LENGTH - DIFFERENCE)
+        return (turned(inside + DIFFERENCE) - turned(inside - DIFFERENCE)) / (2 * DIFFERENCE)
+
+    return Shape(turned, curvature, arclength.new(base.breaks), _centre(base, waves, arclength))
+
+
+class _NewArclength:
+    """The increasing map from old to new arclength, and its inverse."""
+
+    def __init__(self, base: Shape, waves: tuple[Wave, ...], ends: Array) -> None:
+        self._base, self._waves = base, waves
+        cells = CELLS_PER_WAVE * max(wave.mode for wave in waves)
+        uniform = np.linspace(0, LENGTH, cells + 1)
+        self._edges = np.unique(np.concatenate([uniform, base.breaks, [0.0], ends]))
+        self._rule = gauss_rule(QUADRATURE_POINTS)
+        lengths = self._integral(self._edges[:-1], self._edges[1:])
+        self._stretched = np.concatenate([[0.0], np.cumsum(lengths)])
+        starts = np.concatenate([[0.0], ends[:-1]])
+        at = np.searchsorted(self._edges, np.concatenate([[0.0], ends]))
+        scale = (ends - starts) / np.diff(self._stretched[at])
+        self._scale = scale[np.searchsorted(ends, (self._edges[:-1] + self._edges[1:]) / 2)]
+        self._new_edges = np.concatenate([[0.0], np.cumsum(lengths * self._scale)])
+
+    def stretch(self, s: Array) -> Array:
+        delta, delta_slope = displacement(self._waves, s), slope(self._waves, s)
+        return np.hypot(1 + self._base.curvature(s) * delta, delta_slope)
+
+    def _integral(self, start: Array, end: Array) -> Array:
+        points = start[..., None] + (end - start)[..., None] * self._rule.points
+        integral: Array = (end - start) * (self.stretch(points) @ self._rule.weights)
+        return integral
+
+    def new(self, old: Array) -> Array:
+        """New arclength of points of the base."""
+        cell = np.clip(np.searchsorted(self._edges, old, side="right") - 1, 0, len(self._scale) - 1)
+        inside = self._integral(self._edges[cell], old)
+        mapped: Array = self._new_edges[cell] + self._scale[cell] * inside
+        return mapped
+
+    def old(self, new: Array) -> Array:
+        """Points of the base that have this new arclength, by Newton's method inside a cell."""
+        cell = np.clip(np.searchsorted(self._new_edges, new, side="right") - 1, 0, len(self._scale) - 1)
+        old: Array = np.interp(new, self._new_edges, self._edges)
+        for _ in range(8):
+            excess = self._new_edges[cell] + self._scale[cell] * self._integral(self._edges[cell], old) - new
+            old = old - excess / (self._scale[cell] * self.stretch(old))
+        return old
+
+
+def _centre(base: Shape, waves: tuple[Wave, ...], arclength: _NewArclength) -> Array:
+    """Of the displaced circle about the circle's own centre; a loop with kinks keeps the centre of its base."""
+    if len(base.breaks) > 2:
+        return base.centre
+    s = np.linspace(0, LENGTH, 64 * max(wave.mode for wave in waves), endpoint=False)
+    radius = 1 + displacement(waves, s)
+    weight = arclength.stretch(s)
+    outward = np.stack([np.sin(s), -np.cos(s)])
+    scale = LENGTH / (weight.mean() * LENGTH)
+    centre: Array = scale * (outward * radius * weight).sum(axis=1) / weight.sum()
+    return centre

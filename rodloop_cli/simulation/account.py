@@ -1,0 +1,64 @@
+"""The energy account of a run: every energy at the stored times, and the residual that should be zero."""
+
+import numpy as np
+
+from rodloop_cli.march.dense import Shapes, integrals_of_basis, shapes_at
+from rodloop_cli.march.state import Step
+from rodloop_cli.numerics.gauss import Array, gauss_rule
+from rodloop_cli.physics.energies import Quadrature
+from rodloop_cli.physics.equations import Load
+
+INSIDE = np.s_[..., :-1]
+"""The Gauss points of arrays that also hold the right ends."""
+
+
+class EnergyAccount:
+    """Adds up the dissipated energy from step to step and keeps the first row's total as reference."""
+
+    def __init__(self, load: Load) -> None:
+        self._load = load
+        self._dissipated = 0.0
+        self._first: tuple[float, float] | None = None
+        self.largest_residual = 0.0
+        self.largest_change = 0.0
+
+    def at(self, step: Step, shapes: Shapes, quadrature: Quadrature) -> dict[str, Array]:
+        """(k,) of every energy at instants of a step."""
+        area = quadrature.area(shapes.position[INSIDE], shapes.tangent)
+        bending = quadrature.bending(shapes.moment[INSIDE])
+        kinetic = quadrature.kinetic(shapes.velocity[INSIDE])
+        surface = self._load.p * area
+        fractions = np.clip((shapes.times - step.start.time) / step.size, 0.0, 1.0)
+        dissipated = self._dissipated + self._taken(step, fractions, quadrature)
+        rate = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
+        return {
+            "bending_energy": bending,
+            "surface_energy": surface,
+            "kinetic_energy": kinetic,
+            "dissipated_energy": dissipated,
+            "energy_residual": self._residual(bending + surface + kinetic + dissipated, surface),
+            "dissipation_rate": rate,
+            "area": area,
+        }
+
+    def close(self, step: Step, quadrature: Quadrature) -> None:
+        """Add what the film took in the whole step."""
+        self._dissipated += float(self._taken(step, np.array([1.0]), quadrature)[0])
+
+    def _residual(self, total: Array, surface: Array) -> Array:
+        if self._first is None:
+            self._first = float(total[0]), float(surface[0])
+        residual = total - self._first[0]
+        self.largest_residual = max(self.largest_residual, float(np.abs(residual).max()))
+        self.largest_change = max(self.largest_change, float(np.abs(surface - self._first[1]).max()))
+        return residual
+
+    def _taken(self, step: Step, fractions: Array, quadrature: Quadrature) -> Array:
+        """(k,): energy taken by the film from the start of the step, from the power at Gauss points in time."""
+        if self._load.zeta_perp == 0:
+            return np.zeros(len(fractions))
+        nodes = gauss_rule(len(step.nodes) + 1).points
+        shapes = shapes_at(step, step.start.time + step.size * nodes)
+        power = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
+        taken: Array = step.size * integrals_of_basis(nodes, fractions) @ power
+        return taken

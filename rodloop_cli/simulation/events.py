@@ -1,0 +1,149 @@
+"""What happens between the stored times: the first self-crossing, extrema of the area, coming to rest.
+
+All are located on the dense output of the step they fall into, to round-off of the time; no step is shortened for them.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rodloop_cli.errors import ConvergenceError
+from rodloop_cli.march.dense import shapes_at
+from rodloop_cli.march.state import State, Step
+from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.numerics.roots import bracketed_root
+from rodloop_cli.physics.closure import Closure
+from rodloop_cli.physics.clearance import crossing_indicator
+from rodloop_cli.physics.crossing import crosses_itself
+from rodloop_cli.physics.energies import Quadrature
+from rodloop_cli.physics.equations import BoxEquations
+from rodloop_cli.physics.rod import LENGTH
+from rodloop_cli.physics.sampling import Sampler
+from rodloop_cli.statics import relax
+
+TIME_PRECISION = 1e-9
+"""Of the step in which an event is located."""
+
+CROSSING_POINTS = 400
+"""Points of the polygon that is tested; its sides leave the curve by 3e-5 κ."""
+
+
+class CrossingWatch:
+    """Finds the first time at which the centreline crosses itself.
+
+    A shape without concave parts cannot cross. Otherwise the shapes at the stages of every step are tested, so that a crossing that
+    comes and goes within a step is seen if it lasts as long as the gap between two stages.
+    """
+
+    def __init__(self) -> None:
+        self._equations: BoxEquations | None = None
+        self._sampler: Sampler
+
+    def first_in(self, step: Step) -> float | None:
+        """Time of the first crossing in the step, None if there is none."""
+        if (step.fields.moment >= 0).all():
+            return None
+        self._use(step.start.equations)
+        before = 0.0
+        for node, shape in zip(step.nodes, np.moveaxis(self._sampler(step.fields.position), 1, 0), strict=True):
+            if crosses_itself(*shape):
+                return self._located(step, before, float(node))
+            before = float(node)
+        return None
+
+    def _located(self, step: Step, before: float, after: float) -> float:
+        def clearance(fraction: float) -> float:
+            position = shapes_at(step, np.array([step.start.time + fraction * step.size])).position
+            return crossing_indicator(*self._sampler(position)[:, 0])
+
+        # The dense output and the stages differ by the error of the step, and so may their verdicts.
+        if clearance(before) <= 0:
+            before = 0.0
+        if clearance(after) > 0:
+            after = 1.0
+        if clearance(before) <= 0:
+            return step.start.time
+        if clearance(after) > 0:
+            return step.start.time + step.size
+        crossed = bracketed_root(lambda f: -clearance(f), before, after, TIME_PRECISION)
+        return step.start.time + step.size * crossed
+
+    def _use(self, equations: BoxEquations) -> None:
+        if equations is not self._equations:
+            self._equations = equations
+            points = np.arange(CROSSING_POINTS) * (LENGTH / CROSSING_POINTS)
+            self._sampler = Sampler(equations.mesh, equations.rule, points)
+
+
+@dataclass
+class AreaExtrema:
+    """Minima and maxima of the enclosed area: (time, area) each, in order."""
+
+    minima: list[tuple[float, float]] = field(default_factory=list)
+    maxima: list[tuple[float, float]] = field(default_factory=list)
+    _sign: float = 0.0
+
+    def watch(self, step: Step) -> None:
+        """Look for changes of sign of dA/dt between the stages of the step."""
+        equations = step.start.equations
+        quadrature = Quadrature(equations.mesh, equations.rule)
+        inside = np.s_[..., :-1]
+        tangent = np.stack([step.fields.cosine, step.fields.sine])
+        rates = quadrature.area_rate(step.fields.velocity[inside], tangent)
+        before = 0.0
+        for node, rate in zip(step.nodes, rates, strict=True):
+            sign = float(np.sign(rate))
+            if self._sign * sign < 0:
+                self._locate(step, quadrature, before, float(node), falling=self._sign < 0)
+            self._sign = sign or self._sign
+            before = float(node)
+
+    def _locate(self, step: Step, quadrature: Quadrature, before: float, after: float, falling: bool) -> None:
+        def at(fraction: float) -> tuple[float, float]:
+            shapes = shapes_at(step, np.array([step.start.time + fraction * step.size]))
+            area = quadrature.area(shapes.position[..., :-1], shapes.tangent)[0]
+            return float(quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)[0]), float(area)
+
+        if at(before)[0] * at(after)[0] > 0:
+            return
+        fraction = bracketed_root(lambda f: at(f)[0], before, after, TIME_PRECISION)
+        (self.minima if falling else self.maxima).append((step.start.time + fraction * step.size, at(fraction)[1]))
+
+    @property
+    def period(self) -> float | None:
+        """Time from the first minimum of the area to the second, or twice the time to it if the motion ended before."""
+        if len(self.minima) >= 2:
+            return self.minima[1][0] - self.minima[0][0]
+        return None
+
+
+class RestWatch:
+    """Tells when a damped loop has come to rest at an equilibrium.
+
+    Slowness alone is no proof: a strongly damped loop creeps. Once it is slow, the equilibrium nearest to its shape is found by the static
+    solver; at rest means within ``tol`` of it. Asked again only after the loop has slowed down tenfold.
+    """
+
+    def __init__(self, tol: float) -> None:
+        self._tol = tol
+        self._slow = tol
+
+    def settled(self, state: State) -> bool:
+        """Whether this state is at rest."""
+        speed = float(np.abs(state.velocity).max())
+        if speed > self._slow:
+            return False
+        self._slow = speed / 10
+        try:
+            equilibrium = relax(state.equations, state.unknowns)
+        except ConvergenceError:
+            return False
+        return distance(state, equilibrium) < self._tol
+
+
+def distance(state: State, unknowns: Array) -> float:
+    """Largest distance between two positions of the loop on one mesh, their centres together."""
+    position = state.equations.shape(unknowns[None])[1][:, 0]
+    closure = Closure(state.equations)
+    shift = closure.centre(position) - closure.centre(state.position)
+    return float(np.abs(position - shift[:, None, None] - state.position).max())

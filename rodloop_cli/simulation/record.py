@@ -1,0 +1,99 @@
+"""From steps to rows of the result file."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rodloop_cli.march.dense import Shapes, shapes_at
+from rodloop_cli.march.state import Step
+from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.physics.crossing import crosses_itself
+from rodloop_cli.physics.energies import Quadrature
+from rodloop_cli.physics.equations import BoxEquations, Load
+from rodloop_cli.physics.lobes import count_lobes
+from rodloop_cli.physics.rod import LENGTH, Rod
+from rodloop_cli.physics.sampling import Sampler
+from rodloop_cli.simulation.account import EnergyAccount
+
+Row = dict[str, float | Array]
+
+ROUND_OFF = 1e-12
+"""Of the time: the sum of the steps must not miss a stored time by this much."""
+
+
+def output_points(count: int) -> Array:
+    """(S,): uniform arclengths in [0, 2π)."""
+    points: Array = np.arange(count) * (LENGTH / count)
+    return points
+
+
+class Recorder:
+    """Rows at the stored times."""
+
+    def __init__(self, rod: Rod, load: Load, points: int, times: tuple[float, ...]) -> None:
+        self.s = output_points(points)
+        self.segment: NDArray[np.int_] = rod.segment_at(self.s) + 1
+        self.account = EnergyAccount(load)
+        self._times = np.array(times)
+        self._next = 0
+        self._equations: BoxEquations | None = None
+        self._sampler: Sampler
+        self._quadrature: Quadrature
+
+    def start(self, step: Step) -> Iterator[Row]:
+        """The row at t = 0 if it is asked for, from the negligible step that gave the forces there."""
+        self._use(step.start.equations)
+        rows = list(self._rows(step, shapes_at(step, np.array([step.start.time])), size=0.0, iterations=0))
+        if self._times[0] <= 0:
+            self._next = 1
+            yield from rows
+
+    def during(self, step: Step, stopped: float | None = None) -> Iterator[Row]:
+        """The rows that are due in a step; if the run ``stopped`` inside it, those before and one there."""
+        self._use(step.start.equations)
+        end = step.start.time + step.size
+        if stopped is None:
+            due = int(np.searchsorted(self._times, end * (1 + ROUND_OFF), side="right"))
+            times = self._times[self._next : due]
+        else:
+            due = int(np.searchsorted(self._times, stopped * (1 - ROUND_OFF), side="left"))
+            times = np.append(self._times[self._next : due], stopped)
+        self._next = due
+        if len(times):
+            yield from self._rows(step, shapes_at(step, times), step.size, step.newton_iterations)
+        self.account.close(step, self._quadrature)
+
+    def _use(self, equations: BoxEquations) -> None:
+        if equations is not self._equations:
+            self._equations = equations
+            self._sampler = Sampler(equations.mesh, equations.rule, self.s)
+            self._quadrature = Quadrature(equations.mesh, equations.rule)
+
+    def _rows(self, step: Step, shapes: Shapes, size: float, iterations: int) -> Iterator[Row]:
+        columns = self._profiles(shapes) | self.account.at(step, shapes, self._quadrature)
+        for i, time in enumerate(shapes.times):
+            row: Row = {name: values[i] for name, values in columns.items()}
+            row["lobes"] = count_lobes(columns["curvature"][i])
+            row["crossing"] = int(crosses_itself(columns["x"][i], columns["y"][i]))
+            row |= {"t": float(time), "step_size": size, "newton_iterations": iterations}
+            yield row
+
+    def _profiles(self, shapes: Shapes) -> dict[str, Array]:
+        """(k, S) of every profile."""
+        sample = self._sampler
+        (x, y), (u, v), (fx, fy) = sample(shapes.position), sample(shapes.velocity), sample(shapes.force)
+        theta, moment = sample(shapes.theta, LENGTH), sample(shapes.moment)
+        cosine, sine = np.cos(theta), np.sin(theta)
+        return {
+            "x": x,
+            "y": y,
+            "theta": theta,
+            "curvature": moment / sample.stiffness,
+            "moment": moment,
+            "axial_force": fx * cosine + fy * sine,
+            "shear_force": fy * cosine - fx * sine,
+            "velocity_x": u,
+            "velocity_y": v,
+        }
+

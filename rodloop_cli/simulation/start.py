@@ -1,0 +1,120 @@
+"""From a case to the loop at t = 0, on a mesh that resolves it."""
+
+from dataclasses import dataclass
+from math import ceil, sqrt
+
+import numpy as np
+
+from rodloop_cli.case import Case, ModePerturbation
+from rodloop_cli.march.loop import Departure
+from rodloop_cli.march.radau import started
+from rodloop_cli.march.refine import SHARE, unresolved
+from rodloop_cli.march.state import State, Step
+from rodloop_cli.numerics.gauss import GaussRule, gauss_rule
+from rodloop_cli.physics.equations import BoxEquations, Load
+from rodloop_cli.physics.rod import Mesh, Rod, Segment, cells_by_length
+from rodloop_cli.physics.shapes import Wave, circle, displacement, perturbed, random_waves
+from rodloop_cli.statics import as_shape, laid_on, unloaded
+
+STARTING_TIME = 1e-4
+"""Length of the backward Euler step that gives the forces at t = 0+, in units of the fastest time of the motion."""
+
+LEAST_CELLS = 4
+MOST_START_CELLS = 2048
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """The loop just after the load is switched on; ``step`` is the negligible one that gave its forces."""
+
+    rod: Rod
+    load: Load
+    state: State
+    step: Step
+    departure: Departure
+
+
+def start(case: Case) -> Start:
+    """Build the initial state of a case. Raises ConvergenceError where the equilibrium or its forces cannot be found."""
+    rod, load = rod_of(case), load_of(case)
+    waves = waves_of(case)
+    rule = gauss_rule(points_per_cell(case))
+    mesh, unknowns = _resolved(case, rod, load, rule, waves)
+    state = State.at_rest(BoxEquations(mesh, rule, load), unknowns)
+    state, step = started(state, STARTING_TIME * fastest_time(load, rod))
+    amplitude = float(np.abs(displacement(waves, np.linspace(0, 2 * np.pi, 1024))).max())
+    push = float(np.abs(state.acceleration).max()) * growth_time(load, rod) ** 2
+    return Start(rod, load, state, step, Departure(min(1.0, max(amplitude, push))))
+
+
+def rod_of(case: Case) -> Rod:
+    """The rod of a case."""
+    return Rod(tuple(Segment(s.fraction, s.stiffness, s.density) for s in case.segments))
+
+
+def load_of(case: Case) -> Load:
+    """The load of a case."""
+    return Load(case.p, case.zeta_perp, case.gamma)
+
+
+def waves_of(case: Case) -> tuple[Wave, ...]:
+    """The perturbation of a case, its random parts drawn."""
+    waves: list[Wave] = []
+    for item in case.perturbation:
+        if isinstance(item, ModePerturbation):
+            waves.append(Wave(item.mode, item.amplitude, item.phase))
+        elif item.random.amplitude > 0:
+            waves.extend(random_waves(item.random.amplitude, item.random.modes, item.random.seed))
+    return tuple(waves)
+
+
+def points_per_cell(case: Case) -> int:
+    """Gauss points in a cell: the paper's box has one, otherwise the more the tighter the tolerance."""
+    if case.scheme == "bdf2":
+        return 1
+    assert case.tol is not None
+    return 6 if case.tol > 3e-5 else 8 if case.tol > 3e-7 else 10
+
+
+def growth_time(load: Load, rod: Rod) -> float:
+    """Time scale of the motion of the whole loop under this load."""
+    heaviest = max(s.density for s in rod.segments)
+    return sqrt(heaviest) / (1 + abs(load.p)) ** 0.75
+
+
+def fastest_time(load: Load, rod: Rod) -> float:
+    """Time scale of the fastest motion that the load starts."""
+    lightest = min(1.0, *(s.density for s in rod.segments)) if len(rod.segments) > 1 else 1.0
+    stiffest = max(s.stiffness for s in rod.segments)
+    return sqrt(lightest / stiffest) / (1 + abs(load.p)) ** 0.75
+
+
+def _resolved(case: Case, rod: Rod, load: Load, rule: GaussRule, waves: tuple[Wave, ...]) -> tuple[Mesh, np.ndarray]:
+    """A mesh on which the perturbed equilibrium is resolved to the tolerance, and the shape on it."""
+    if case.N is not None:
+        mesh = Mesh.on(rod, cells_by_length(rod, case.N))
+        return mesh, _shape_on(mesh, rod, rule, waves)
+    assert case.tol is not None
+    allowed = SHARE * case.tol * min(1.0, max([abs(w.amplitude) for w in waves], default=1.0))
+    mesh = Mesh.on(rod, tuple(_first_cells(s, load, len(rod.segments)) for s in rod.segments))
+    while True:
+        unknowns = _shape_on(mesh, rod, rule, waves)
+        flagged = unresolved(BoxEquations(mesh, rule, load), unknowns) > allowed
+        if not flagged.any() or mesh.cells > MOST_START_CELLS:
+            return mesh, unknowns
+        mesh = mesh.bisected(flagged)
+
+
+def _first_cells(segment: Segment, load: Load, segments: int) -> int:
+    """About one cell to a wave of the mode that buckles fastest."""
+    waves = sqrt((1 + abs(load.p) / segment.stiffness) / 2)
+    return max(1 if segments > 1 else 2, ceil(segment.fraction * max(LEAST_CELLS, waves)))
+
+
+def _shape_on(mesh: Mesh, rod: Rod, rule: GaussRule, waves: tuple[Wave, ...]) -> np.ndarray:
+    if not rod.has_stiffness_contrast:
+        return laid_on(perturbed(circle(), waves, rod), mesh, rule)
+    unknowns = unloaded(mesh, rule)
+    if not waves:
+        return unknowns
+    return laid_on(perturbed(as_shape(mesh, rule, unknowns), waves, rod), mesh, rule)
