@@ -59,7 +59,7 @@ class ModePerturbation(_Value):
     """Number of waves around the loop."""
     amplitude: float = Field(ge=-rules.AMPLITUDE_SUM_LIMIT, le=rules.AMPLITUDE_SUM_LIMIT)
     """Relative to the radius R; the amplitudes' sum stays below 0.5."""
-    phase: float = Field(0.0, ge=-HUGE, le=HUGE)
+    phase: float = Field(default=0.0, ge=-HUGE, le=HUGE)
     """Radians, counter-clockwise from the bottom (s = 0)."""
 
 
@@ -70,7 +70,7 @@ class RandomModes(_Value):
     """Largest displacement, relative to the radius R."""
     modes: Annotated[tuple[Mode, Mode], _FROM_LIST]
     """First and last mode, both included."""
-    seed: int = Field(0, ge=0, lt=2**63)
+    seed: int = Field(default=0, ge=0, lt=2**63)
     """Of numpy.random.default_rng."""
 
 
@@ -90,6 +90,11 @@ Perturbation = Annotated[
     Annotated[ModePerturbation, Tag("mode")] | Annotated[RandomPerturbation, Tag("random")],
     Discriminator(_kind_of_perturbation),
 ]
+
+
+def _without_default(schema: dict[str, Any]) -> None:
+    """For lists that replace other keys: empty stands for not given, but may not be written."""
+    del schema["default"]
 
 
 def _depends(default: Any, key: str, value: Any, *, shown: bool = True) -> Any:
@@ -113,9 +118,11 @@ def _depends(default: Any, key: str, value: Any, *, shown: bool = True) -> Any:
 class Case(_Value):
     """One run of rodloop: a rod, a load, a time span, a scheme and what to store."""
 
-    title: str = Field("", max_length=300, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$")
+    title: str = Field(default="", max_length=300, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$")
     """One line of text that is repeated in figures and files."""
-    segment_list: Annotated[tuple[Segment, ...], _FROM_LIST] = Field((), alias="segments", max_length=1000)
+    segment_list: Annotated[tuple[Segment, ...], _FROM_LIST] = Field(
+        default=(), alias="segments", max_length=1000, json_schema_extra=_without_default
+    )
     """Any number of segments, counter-clockwise from the bottom; replaces the two ratios and k."""
     stiffness_ratio: Ratio | None = _depends(1.0, "segment_list", ())
     """B2/B1 > 0: bending stiffness of segment 2 relative to segment 1."""
@@ -125,11 +132,11 @@ class Case(_Value):
     """Arclength fraction of segment 1, in (0, 1)."""
     p: float = Field(ge=-HUGE, le=HUGE)
     """Load p R^3/B1 of the soap film: > 0 outer film ruptured, < 0 inner film ruptured."""
-    zeta_perp: float = Field(0.0, ge=0, le=HUGE)
+    zeta_perp: float = Field(default=0.0, ge=0, le=HUGE)
     """Normal drag coefficient >= 0."""
-    gamma: float = Field(0.5, ge=0, le=HUGE)
+    gamma: float = Field(default=0.5, ge=0, le=HUGE)
     """Drag anisotropy >= 0: tangential over normal drag coefficient."""
-    perturbation: Annotated[tuple[Perturbation, ...], _FROM_LIST] = Field((), max_length=100)
+    perturbation: Annotated[tuple[Perturbation, ...], _FROM_LIST] = Field(default=(), max_length=100)
     """Radial perturbations of the unloaded equilibrium shape, added together."""
     t_end: float = Field(ge=1e-9, le=1e6)
     """End of the run."""
@@ -143,11 +150,13 @@ class Case(_Value):
     """bdf2: fixed time step (default 1e-3); radau: upper bound on the step (default: none)."""
     stop_at: Annotated[tuple[Event, ...], _FROM_LIST] = ("crossing",)
     """Events that end the run; without crossing the run goes on and the frames are marked."""
-    snapshot_times: Annotated[tuple[Annotated[float, Field(ge=0)], ...], _FROM_LIST] = Field((), max_length=10_000)
+    snapshot_times: Annotated[tuple[Annotated[float, Field(ge=0)], ...], _FROM_LIST] = Field(
+        default=(), max_length=10_000, json_schema_extra=_without_default
+    )
     """Stored times in [0, t_end], increasing; replaces snapshots."""
     snapshots: Annotated[int, Field(ge=2, le=100_000)] | None = _depends(rules.DEFAULT_SNAPSHOTS, "snapshot_times", ())
     """Number of stored times, uniform in [0, t_end], both ends included."""
-    output_points: int = Field(rules.DEFAULT_POINTS, ge=8, le=100_000)
+    output_points: int = Field(default=rules.DEFAULT_POINTS, ge=8, le=100_000)
     """Number of stored arclength points."""
 
     @model_validator(mode="after")

@@ -10,7 +10,7 @@ import click
 from rodloop_cli import __version__
 from rodloop_cli.cli.lazy import Entry, LazyGroup
 from rodloop_cli.cli.outcome import exit_code
-from rodloop_cli.cli.settings import Settings, current_settings
+from rodloop_cli.cli.settings import Settings
 
 COMMANDS = {
     "run": Entry("rodloop_cli.cli.run:run", "Simulate a case and write its motion to a netCDF file."),
@@ -33,7 +33,6 @@ COMMANDS = {
 @click.version_option(__version__, "-V", "--version", prog_name="rodloop")
 def rodloop() -> None:
     """Dynamics of a closed elastic rod in a soap film."""
-    current_settings().log_to_stderr()
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -41,8 +41,7 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.table:
             return None
-        module, _, attribute = self.table[cmd_name].target.partition(":")
-        command: click.Command = getattr(import_module(module), attribute)
+        command = _imported(cmd_name, self.table[cmd_name])
         present = {name for parameter in command.params for name in parameter.opts}
         command.params += [option for option in common_options() if present.isdisjoint(option.opts)]
         return command
@@ -64,6 +63,17 @@ class LazyGroup(click.Group):
         ctx.ensure_object(Settings)
         with _plain_endings():
             return super().invoke(ctx)
+
+
+def _imported(name: str, entry: Entry) -> click.Command:
+    module, _, attribute = entry.target.partition(":")
+    try:
+        command: click.Command = getattr(import_module(module), attribute)
+    except ModuleNotFoundError as error:
+        if error.name != module:
+            raise
+        raise click.UsageError(f"'{name}' is not part of this installation of rodloop.") from None
+    return command
 
 
 @contextmanager

@@ -37,7 +37,9 @@ def current_settings() -> Settings:
 
 def _count(names: list[str], step: int, words: str) -> click.Option:
     def callback(context: click.Context, _: click.Parameter, times: int) -> None:
-        context.ensure_object(Settings).verbosity += step * times
+        settings = context.ensure_object(Settings)
+        settings.verbosity += step * times
+        settings.log_to_stderr()
 
     return click.Option(names, count=True, expose_value=False, callback=callback, help=words)
 

@@ -20,15 +20,16 @@ def writing(path: Path, kept: Callable[[], str]) -> Iterator[None]:
     try:
         yield
     except (OSError, RuntimeError) as error:
-        raise OutputError(f"{path}: {_reason(error, path.parent)}{kept()}") from error
+        raise OutputError(f"{path}: {_reason(error, path, kept)}") from error
 
 
-def _reason(error: Exception, folder: Path) -> str:
+def _reason(error: Exception, path: Path, kept: Callable[[], str]) -> str:
     number = error.errno if isinstance(error, OSError) else None
-    if not folder.is_dir():
-        return f"the folder {folder} is gone; create it again or {_REMEDY}"
+    if not path.parent.is_dir():
+        return f"the folder {path.parent} is gone; create it again or {_REMEDY}"
     if number in _FULL and isinstance(error, OSError):
-        return f"the disk is full ({error.strerror}); free some room or {_REMEDY}"
+        return f"the disk is full ({error.strerror}); free some room or {_REMEDY}{kept()}"
     if number in _FORBIDDEN:
-        return f"no permission to write in {folder}; change it or {_REMEDY}"
-    return f"cannot be written ({error}); if the disk is full or over quota, free some room, else {_REMEDY}"
+        return f"no permission to write in {path.parent}; change it or {_REMEDY}{kept()}"
+    # A failure within HDF5 leaves its file in an unknown state, so nothing is promised about the rows.
+    return f"cannot be written ({error}) and may be damaged; if the disk is failing, {_REMEDY}"

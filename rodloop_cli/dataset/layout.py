@@ -44,9 +44,7 @@ def _create_variable(dataset: netCDF4.Dataset, variable: Variable, points: int) 
     # Only `t` is filled beforehand: a time that reads as the fill value marks a row that was never completed.
     # Neither way of creating it gives a variable the attribute _FillValue, which CF forbids on coordinates.
     fill = None if variable.name == "t" else False
-    created = dataset.createVariable(
-        variable.name, variable.dtype, variable.dims, chunksizes=chunks, fill_value=fill
-    )
+    created = dataset.createVariable(variable.name, variable.dtype, variable.dims, chunksizes=chunks, fill_value=fill)
     created.setncatts(variable.attributes)
 
 

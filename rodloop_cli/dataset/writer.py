@@ -6,10 +6,8 @@ Written with netCDF4 alone: xarray cannot append along an unlimited dimension an
 from __future__ import annotations
 
 import contextlib
-import errno
 import math
 import os
-import shutil
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,15 +21,13 @@ from rodloop_cli.dataset.failures import writing
 from rodloop_cli.dataset.layout import BLOCK_ROWS, create_layout, row_bytes
 from rodloop_cli.dataset.lock import OutputLock
 from rodloop_cli.dataset.provenance import clean_attributes
+from rodloop_cli.dataset.room import Room
 from rodloop_cli.dataset.rows import Row, RowBlock
 from rodloop_cli.dataset.variables import Attribute
 from rodloop_cli.errors import OutputError
 
 SYNC_SECONDS = 1.0
 """Longest time that a row waits in memory while rows or `flush_if_due` keep coming; a sync costs 3-5 ms."""
-
-_RESERVE_BYTES = 512 * 1024
-"""Room kept free for the file's own structures: on a full disk HDF5 cannot even close a file properly."""
 
 
 def part_path(output: Path) -> Path:
@@ -63,6 +59,7 @@ class RunWriter:
         self._written = 0
         self._kept_until = math.nan
         self._block = RowBlock(len(s), BLOCK_ROWS)
+        self._room = Room(self.path.parent)
         self._row_bytes = row_bytes(len(s))
         self._synced = time.monotonic()
         clean = clean_attributes(attributes)
@@ -93,7 +90,7 @@ class RunWriter:
         if not self._block.count:
             return
         with writing(self.part, self._kept):
-            self._check_room()
+            self._room.take(self._block.count * self._row_bytes)
             self._write_block(self._open_dataset())
         self._kept_until = self._block.last_time
         self._synced = time.monotonic()
@@ -147,7 +144,7 @@ class RunWriter:
         attributes: Mapping[str, Attribute],
     ) -> netCDF4.Dataset:
         with writing(self.part, self._kept):
-            self._check_room()
+            self._room.take(0)
             dataset = netCDF4.Dataset(self.part, "w", format="NETCDF4")
             try:
                 create_layout(dataset, s, segment, attributes)
@@ -172,12 +169,6 @@ class RunWriter:
     def _close(self) -> None:
         dataset, self._dataset = self._open_dataset(), None
         dataset.close()
-
-    def _check_room(self) -> None:
-        needed = self._block.count * self._row_bytes + _RESERVE_BYTES
-        free = shutil.disk_usage(self.part.parent).free
-        if free < needed:
-            raise OSError(errno.ENOSPC, f"{free / 1e6:.1f} MB free, {needed / 1e6:.1f} MB needed")
 
     def _kept(self) -> str:
         return f"; the rows up to t = {self._kept_until:.6g} are in {self.part.name}" if self._written else ""

@@ -17,8 +17,10 @@ Far from contact only the sign means anything: the distance may jump where stran
 from __future__ import annotations
 
 import math
+import sys
 
 import numpy as np
+import numpy.typing as npt
 
 from rodloop_cli.physics.crossing import Floats, Indices, find_crossings
 
@@ -38,14 +40,21 @@ def _clearance(points: Floats) -> float:
     edges = np.roll(points, -1, axis=0) - points
     tangents = edges + np.roll(edges, 1, axis=0)
     squared = _squared_distances(points)
-    squared[tangents @ tangents.T >= 0.0] = np.inf
+    squared[(tangents @ tangents.T >= 0.0) | _neighbours(len(points))] = np.inf
     # The vertex of the nearest edge that is closer is at most half an edge further away than the edge itself,
     # so the pairs of vertices within that of the least distance contain the answer.
     reach = squared.min() + 0.25 * float((edges**2).sum(axis=1).max())
-    i, j = np.nonzero(squared <= reach)
+    i, j = np.nonzero(squared <= min(reach, sys.float_info.max))
     ahead = _distance_to_edges(points[i], points[j], edges[j])
     behind = _distance_to_edges(points[i], points[j - 1], edges[j - 1])
-    return float(min(ahead.min(), behind.min()))
+    return float(min(ahead.min(initial=np.inf), behind.min(initial=np.inf)))
+
+
+def _neighbours(size: int) -> npt.NDArray[np.bool_]:
+    """Whether two vertices are the same or follow one another, [S, S]; a sharp bend may oppose their tangents."""
+    index = np.arange(size)
+    apart = np.abs(index[:, None] - index)
+    return np.asarray((apart <= 1) | (apart == size - 1))
 
 
 def _squared_distances(points: Floats) -> Floats:

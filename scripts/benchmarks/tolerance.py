@@ -1,0 +1,132 @@
+"""What the tolerance delivers: position error over tol, on reference and random cases.
+
+The error is the largest distance between the stored positions of a run and of the same run at tol/1000, up to the first crossing, after
+the rigid motion between the two shapes is taken out.
+
+    python -m scripts.benchmarks.tolerance [--random N] [--tols 1e-3,1e-4,…]
+"""
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from rodloop_cli.case import Case, ModePerturbation, RandomModes, RandomPerturbation
+from rodloop_cli.dataset.rows import Row
+from rodloop_cli.dataset.variables import Attribute
+from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.simulation import Run
+
+TIGHTER = 1e-3
+REFERENCES = {
+    "homogeneous p=3.8": {"p": 3.8, "t_end": 9.6, "perturbation": (ModePerturbation(mode=2, amplitude=5e-3),)},
+    "stiffness 5 p=3.8": {"p": 3.8, "stiffness_ratio": 5.0, "t_end": 2.26},
+    "density 5 p=3.8": {
+        "p": 3.8,
+        "density_ratio": 5.0,
+        "t_end": 11.5,
+        "perturbation": (ModePerturbation(mode=2, amplitude=5e-3),),
+    },
+    "stiffness 12.8 drag 2": {"p": 5.0, "stiffness_ratio": 12.8, "zeta_perp": 2.0, "t_end": 3.0},
+    "homogeneous p=64": {
+        "p": 64.0,
+        "t_end": 0.28,
+        "perturbation": (
+            ModePerturbation(mode=5, amplitude=2e-5, phase=0.4),
+            ModePerturbation(mode=6, amplitude=5e-5),
+            ModePerturbation(mode=7, amplitude=2e-5, phase=1.0),
+        ),
+    },
+}
+
+
+class Positions:
+    """Keeps time and positions of every row, and the attributes."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+        self.shapes: list[Array] = []
+        self.residuals: list[float] = []
+        self.attributes: dict[str, Attribute] = {}
+
+    def append(self, row: Row) -> None:
+        """Take a row."""
+        self.times.append(float(np.asarray(row["t"])))
+        self.shapes.append(np.stack([np.asarray(row["x"]), np.asarray(row["y"])]))
+        self.residuals.append(float(np.asarray(row["energy_residual"])))
+
+    def flush_if_due(self) -> None:
+        """Nothing waits."""
+
+    def finish(self, attributes: dict[str, Attribute]) -> None:
+        """Keep the outcome."""
+        self.attributes = dict(attributes)
+
+
+def random_cases(count: int, seed: int = 20260614) -> Iterator[tuple[str, dict[str, object]]]:
+    """Loops of all kinds: loads of both signs, contrasts up to 10, drag in half of them."""
+    generator = np.random.default_rng(seed)
+    for i in range(count):
+        p = float(generator.choice([-1, 1, 1, 1]) * np.exp(generator.uniform(np.log(2), np.log(100))))
+        case = {
+            "p": p,
+            "stiffness_ratio": float(np.exp(generator.uniform(-2.3, 2.3))),
+            "density_ratio": float(np.exp(generator.uniform(-2.3, 2.3))),
+            "k": float(generator.uniform(0.2, 0.8)),
+            "zeta_perp": float(generator.choice([0.0, generator.uniform(0.1, 3)])),
+            "t_end": 8.0 / (1 + abs(p)) ** 0.75,
+            "perturbation": (
+                RandomPerturbation(random=RandomModes(amplitude=float(10 ** generator.uniform(-4, -2)), modes=(2, 8), seed=i)),
+            ),
+        }
+        yield f"random {i}", case
+
+
+def solve(case: dict[str, object], tol: float) -> Positions:
+    """One run."""
+    positions = Positions()
+    Run.of(Case(**case, tol=tol)).into(positions)  # type: ignore[arg-type]
+    return positions
+
+
+def error(run: Positions, reference: Positions) -> float:
+    """Largest distance in the frame of the loop; rows at equal times only (a crossing ends both runs, not quite together)."""
+    count = sum(a == b for a, b in zip(run.times, reference.times, strict=False))
+    return max(distance(a, b) for a, b in zip(run.shapes[:count], reference.shapes[:count], strict=True))
+
+
+def distance(shape: Array, other: Array) -> float:
+    """Largest distance of (2, S) points after the best rigid motion (complex Procrustes)."""
+    a, b = shape[0] + 1j * shape[1], other[0] + 1j * other[1]
+    a, b = a - a.mean(), b - b.mean()
+    turn = np.vdot(b, a)
+    return float(np.abs(a - b * turn / abs(turn)).max())
+
+
+def main() -> None:
+    """Print a table of error/tol and of the energy residual relative to the largest energy change."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--random", type=int, default=10)
+    parser.add_argument("--tols", default="1e-3,1e-4,1e-5,1e-6")
+    parser.add_argument("--json", type=Path)
+    options = parser.parse_args()
+    rows = []
+    for name, case in [*REFERENCES.items(), *random_cases(options.random)]:
+        for tol in map(float, options.tols.split(",")):
+            run = solve(case, tol)
+            ratio = error(run, solve(case, tol * TIGHTER)) / tol
+            row = {"case": name, "tol": tol, "ratio": ratio, **{k: v for k, v in run.attributes.items() if "total" in k}}
+            rows.append(row)
+            print(
+                f"{name:24s} tol {tol:.0e} error/tol {ratio:8.3f} steps {row['total_steps']} cells {row['total_cells']} "
+                f"residual {run.attributes['largest_energy_residual']:.1e}",
+                flush=True,
+            )
+    if options.json:
+        options.json.write_text(json.dumps(rows, indent=1, default=float))
+
+
+if __name__ == "__main__":
+    main()
