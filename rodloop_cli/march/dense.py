@@ -47,7 +47,8 @@ def _moved(step: Step, fractions: Array) -> Array:
     """(k, n, 6 + m): the unknowns at fractions (k,) of the step (positions and angles; the rest has no meaning)."""
     rates = np.concatenate([step.start.rates[None], step.rates])
     weights = step.size * integrals_of_basis(np.concatenate([[0.0], step.nodes]), fractions)
-    moved: Array = step.start.unknowns + np.tensordot(weights, rates, 1)
+    moved = (weights @ rates.reshape(len(rates), -1)).reshape(len(fractions), *rates.shape[1:])
+    moved += step.start.unknowns
     return moved
 
 

@@ -19,6 +19,12 @@ SMALLEST_STEP = 1e-13
 ROUND_OFF = 1e-12
 """The smallest position error that a step can be asked for."""
 
+LOOSEST = 1e-3
+SHARE_AT_LOOSEST = 0.6
+TIGHTENING = 0.2
+"""The share of the tolerance that one step may use is SHARE_AT_LOOSEST (tol/LOOSEST)^TIGHTENING: the errors of more and more steps
+add up. Fitted so that (error of the whole run)/tol stays of order one from 1e-3 to 1e-8; see docs/accuracy.md."""
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -29,6 +35,11 @@ class Plan:
     stages: int
     longest: float
     first: float
+
+    def allowance(self, scale: float) -> float:
+        """Position error allowed in a step, for a departure ``scale``."""
+        share = SHARE_AT_LOOSEST * (self.tol / LOOSEST) ** TIGHTENING
+        return max(ROUND_OFF, share * self.tol * scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +75,7 @@ def march(state: State, plan: Plan, refiner: Refiner, departure: Departure, work
         if size < SMALLEST_STEP * plan.t_end:
             raise ConvergenceError(_gave_up(state.time, size))
         scale = departure.of(state, base)
-        step = stepper.step(state, last, size, max(ROUND_OFF, plan.tol * scale))
+        step = stepper.step(state, last, size, plan.allowance(scale))
         if step is None:
             work.newton_failures += 1
             proposal = CUT_AFTER_FAILURE * size

@@ -65,7 +65,8 @@ class RadauStepper:
             return None
         self.work.newton_iterations += solution.iterations
         self._contraction = solution.contraction
-        rates = np.tensordot(motion.rates, solution.unknowns - state.unknowns, 1)
+        gained = solution.unknowns - state.unknowns
+        rates = (motion.rates @ gained.reshape(method.stages, -1)).reshape(gained.shape)
         error = self._error(state, solution.fields, size) / allowance
         return Step(state, size, method.nodes, solution.unknowns, rates, solution.fields, solution.iterations, error)
 

@@ -27,7 +27,7 @@ class Quadrature:
         """½ ∮ (x sin θ - y cos θ) ds for position, tangent (2, …, n, m); negative where the loop is inside out."""
         return self.integral(0.5 * (position[0] * tangent[1] - position[1] * tangent[0]))
 
-    def area_rate(self, velocity: Array, tangent: Array) -> Array:
+    def area_rate(self, velocity: Array, tangent: Array | tuple[Array, Array]) -> Array:
         """∮ (u sin θ - v cos θ) ds: how fast the area grows."""
         return self.integral(velocity[0] * tangent[1] - velocity[1] * tangent[0])
 

@@ -121,7 +121,8 @@ class BoxEquations:
     def _from_node(self, unknowns: Array, components: slice, increments: Array) -> Array:
         """(2, k, n, m + 1): a vector at the left nodes plus the integral of ``increments``."""
         out: Array = increments @ self._integrate
-        out += np.moveaxis(unknowns[..., components], -1, 0)[..., None]
+        start = unknowns[..., components]
+        out += start.transpose(start.ndim - 1, *range(start.ndim - 1))[..., None]
         return out
 
     def _force_density(self, direction: Array, velocity: Array, acceleration: Array) -> Array:

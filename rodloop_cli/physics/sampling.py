@@ -23,8 +23,10 @@ class Sampler:
 
     def __call__(self, values: Array, turn: float = 0.0) -> Array:
         """(…, S) from values (…, n, m + 1) at the Gauss points and right ends; ``turn`` is what they gain round the loop."""
-        left = np.roll(values[..., -1], 1, axis=-1)
-        left[..., 0] -= turn
-        sampled: Array = (values[..., self.cell, :] * self._weights[:, 1:]).sum(axis=-1)
-        sampled += left[..., self.cell] * self._weights[:, 0]
+        left = values[..., self.cell - 1, -1]
+        if turn:
+            left -= turn * (self.cell == 0)
+        left *= self._weights[:, 0]
+        left += np.einsum("...sj,sj->...s", values[..., self.cell, :], self._weights[:, 1:])
+        sampled: Array = left
         return sampled

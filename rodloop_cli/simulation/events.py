@@ -31,25 +31,46 @@ CROSSING_POINTS = 400
 class CrossingWatch:
     """Finds the first time at which the centreline crosses itself.
 
-    A shape without concave parts cannot cross. Otherwise the shapes at the stages of every step are tested, so that a crossing that
-    comes and goes within a step is seen if it lasts as long as the gap between two stages.
+    A shape without concave parts cannot cross, and one that is a distance d from crossing cannot cross before some point has moved by
+    d/2. Otherwise the shapes at the stages of a step are tested, so that a crossing that comes and goes within a step is seen if it
+    lasts as long as the gap between two stages.
     """
 
     def __init__(self) -> None:
         self._equations: BoxEquations | None = None
         self._sampler: Sampler
+        self._reference: Array
+        self._safe = 0.0
 
     def first_in(self, step: Step) -> float | None:
         """Time of the first crossing in the step, None if there is none."""
         if (step.fields.moment >= 0).all():
+            self._safe = 0.0
             return None
         self._use(step.start.equations)
+        if self._safe and np.abs(step.fields.position - self._reference[:, None]).max() < self._safe:
+            return None
         before = 0.0
-        for node, shape in zip(step.nodes, np.moveaxis(self._sampler(step.fields.position), 1, 0), strict=True):
+        for node, shape in zip(step.nodes, self._sampler(step.fields.position).swapaxes(0, 1), strict=True):
             if crosses_itself(*shape):
                 return self._located(step, before, float(node))
             before = float(node)
+        self._keep(step)
         return None
+
+    def _keep(self, step: Step) -> None:
+        """Remember the end of the step and how far its points can move without any crossing.
+
+        The clearance is that of a polygon through the points of the cells, whose sides lie inside the bends by κ h²/8. Strands that are not
+        opposed now may come to be in a bend that closes, whose size is 1/κ.
+        """
+        position = self._reference = step.fields.position[:, -1]
+        mesh = step.start.equations.mesh
+        sharpest = float(np.abs(step.fields.moment[-1] / mesh.stiffness[:, None]).max())
+        spacing = float(mesh.lengths.max()) / position.shape[-1] * 2
+        clearance = crossing_indicator(*position.reshape(2, -1)) - sharpest * spacing**2 / 4
+        # Half, as both strands move; over √2, as components are compared.
+        self._safe = max(0.0, min(clearance, 1 / sharpest) / 2 / np.sqrt(2))
 
     def _located(self, step: Step, before: float, after: float) -> float:
         def clearance(fraction: float) -> float:
@@ -70,7 +91,7 @@ class CrossingWatch:
 
     def _use(self, equations: BoxEquations) -> None:
         if equations is not self._equations:
-            self._equations = equations
+            self._equations, self._safe = equations, 0.0
             points = np.arange(CROSSING_POINTS) * (LENGTH / CROSSING_POINTS)
             self._sampler = Sampler(equations.mesh, equations.rule, points)
 
@@ -82,14 +103,13 @@ class AreaExtrema:
     minima: list[tuple[float, float]] = field(default_factory=list)
     maxima: list[tuple[float, float]] = field(default_factory=list)
     _sign: float = 0.0
+    _equations: BoxEquations | None = None
+    _quadrature: Quadrature | None = None
 
     def watch(self, step: Step) -> None:
         """Look for changes of sign of dA/dt between the stages of the step."""
-        equations = step.start.equations
-        quadrature = Quadrature(equations.mesh, equations.rule)
-        inside = np.s_[..., :-1]
-        tangent = np.stack([step.fields.cosine, step.fields.sine])
-        rates = quadrature.area_rate(step.fields.velocity[inside], tangent)
+        quadrature = self._quadrature_on(step.start.equations)
+        rates = quadrature.area_rate(step.fields.velocity[..., :-1], (step.fields.cosine, step.fields.sine))
         before = 0.0
         for node, rate in zip(step.nodes, rates, strict=True):
             sign = float(np.sign(rate))
@@ -97,6 +117,11 @@ class AreaExtrema:
                 self._locate(step, quadrature, before, float(node), falling=self._sign < 0)
             self._sign = sign or self._sign
             before = float(node)
+
+    def _quadrature_on(self, equations: BoxEquations) -> Quadrature:
+        if self._quadrature is None or equations is not self._equations:
+            self._equations, self._quadrature = equations, Quadrature(equations.mesh, equations.rule)
+        return self._quadrature
 
     def _locate(self, step: Step, quadrature: Quadrature, before: float, after: float, falling: bool) -> None:
         def at(fraction: float) -> tuple[float, float]:

@@ -49,8 +49,11 @@ class Recorder:
             self._next = 1
             yield from rows
 
-    def during(self, step: Step, stopped: float | None = None) -> Iterator[Row]:
-        """The rows that are due in a step; if the run ``stopped`` inside it, those before and one there."""
+    def during(self, step: Step, crossed: float | None = None, stopped: float | None = None) -> Iterator[Row]:
+        """The rows that are due in a step; if the run ``stopped`` inside it, those before and one there.
+
+        ``crossed``: when the loop first crossed itself; later rows are tested, one by one, for it may come apart again.
+        """
         self._use(step.start.equations)
         end = step.start.time + step.size
         if stopped is None:
@@ -61,8 +64,16 @@ class Recorder:
             times = np.append(self._times[self._next : due], stopped)
         self._next = due
         if len(times):
-            yield from self._rows(step, shapes_at(step, times), step.size, step.newton_iterations)
+            for row in self._rows(step, shapes_at(step, times), step.size, step.newton_iterations):
+                yield row | {"crossing": self._crossing(row, crossed)}
         self.account.close(step, self._quadrature)
+
+    @staticmethod
+    def _crossing(row: Row, crossed: float | None) -> int:
+        """1 at the first contact itself, which the polygon of the output points may be too coarse to show."""
+        if crossed is None or row["t"] < crossed:
+            return 0
+        return int(row["t"] == crossed or crosses_itself(np.asarray(row["x"]), np.asarray(row["y"])))
 
     def _use(self, equations: BoxEquations) -> None:
         if equations is not self._equations:
@@ -75,8 +86,7 @@ class Recorder:
         for i, time in enumerate(shapes.times):
             row: Row = {name: values[i] for name, values in columns.items()}
             row["lobes"] = count_lobes(columns["curvature"][i])
-            row["crossing"] = int(crosses_itself(columns["x"][i], columns["y"][i]))
-            row |= {"t": float(time), "step_size": size, "newton_iterations": iterations}
+            row |= {"t": float(time), "step_size": size, "newton_iterations": iterations, "crossing": 0}
             yield row
 
     def _profiles(self, shapes: Shapes) -> dict[str, Array]:

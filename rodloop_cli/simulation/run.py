@@ -74,7 +74,7 @@ class Run:
             if summary.first_crossing is None:
                 summary.first_crossing = crossing.first_in(step)
             stopped = summary.first_crossing if "crossing" in self.case.stop_at else None
-            for row in self.recorder.during(step, stopped):
+            for row in self.recorder.during(step, summary.first_crossing, stopped):
                 sink.append(row)
             sink.flush_if_due()
             if progress:
