@@ -12,7 +12,7 @@ from rodloop_cli.cli.arguments import case_file, overrides
 from rodloop_cli.cli.settings import current_settings
 
 if TYPE_CHECKING:
-    from rodloop_cli.simulation import Summary
+    from rodloop_cli.simulation import Run, Summary
 
 
 @click.command()
@@ -20,28 +20,51 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", metavar="OUT.nc", help="Result file (default: the case's name with .nc, here).")
 @overrides
 @click.option("-f", "--force", is_flag=True, help="Replace the result file if it exists.")
+@click.option("--resume", is_flag=True, help="Continue a run that was killed; start it if there is none.")
 @click.option("--json", "as_json", is_flag=True, help="Print what the run found as one JSON object.")
-def run(case_path: str, output: str | None, overrides: tuple[str, ...], force: bool, as_json: bool) -> None:
+def run(
+    case_path: str, output: str | None, overrides: tuple[str, ...], force: bool, resume: bool, as_json: bool
+) -> None:
     """Simulate CASE and write its motion to a netCDF file, whose path is printed."""
     from rodloop_cli.case import load_case
 
     case = load_case(case_path, overrides)
     path = Path(output) if output else Path(Path(case_path).stem + ".nc")
 
-    from rodloop_cli.cli.progress import time_bar
-    from rodloop_cli.dataset.writer import RunWriter
+    from rodloop_cli.dataset.reader import holds_case
+    from rodloop_cli.dataset.writer import check_target
+
+    if resume and not force and path.exists() and holds_case(path, case.sha256):
+        click.echo(f"{path} is finished already", err=True)
+        click.echo(path)
+        return
+    check_target(path, force=force)
+
     from rodloop_cli.simulation import Run
 
     prepared = Run.of(case)
-    recorder = prepared.recorder
-    with (
-        RunWriter(path, s=recorder.s, segment=recorder.segment, attributes=prepared.attributes, force=force) as writer,
-        time_bar(case.t_end) as progress,
-    ):
-        summary = prepared.into(writer, progress)
+    summary = simulated(prepared, path, force=force, resume=resume)
     if not current_settings().quiet:
         click.echo("\n".join(told(summary)), err=True)
     click.echo(json.dumps(found(summary, path)) if as_json else str(path))
+
+
+def simulated(run: Run, path: Path, *, force: bool, resume: bool) -> Summary:
+    """Run to the end, with a progress bar and checkpoints."""
+    from rodloop_cli.cli.progress import time_bar
+    from rodloop_cli.dataset.writer import RunWriter
+    from rodloop_cli.simulation.resume import Keeper, resumed, signals_to
+
+    recorder = run.recorder
+    rows = resumed(path, run) if resume else 0
+    writer = RunWriter(
+        path, s=recorder.s, segment=recorder.segment, attributes=run.attributes, force=force, resume=rows
+    )
+    keeper = Keeper(writer, run)
+    with writer, time_bar(run.case.t_end) as progress, signals_to(keeper):
+        summary = run.into(writer, progress, keeper)
+    keeper.done()
+    return summary
 
 
 def told(summary: Summary) -> list[str]:
@@ -57,7 +80,7 @@ def told(summary: Summary) -> list[str]:
     lines.append(f"energy residual {summary.energy_residual:.1e}, {share:.1e} of the largest change")
     lines.append(
         f"{work.steps} steps ({work.rejected} rejected, {work.newton_failures} failed), {summary.cells} cells, "
-        f"{summary.wall_seconds:.2f} s"
+        f"{summary.seconds:.2f} s"
     )
     return lines
 

@@ -49,6 +49,15 @@ def open_run(path: str | os.PathLike[str], *, partial: bool = False) -> xr.Datas
     return _open(found)
 
 
+def holds_case(path: str | os.PathLike[str], sha256: str) -> bool:
+    """Whether ``path`` is the finished result of the case with this key."""
+    try:
+        with netCDF4.Dataset(path) as raw:
+            return bool(getattr(raw, "case_sha256", "") == sha256 and getattr(raw, "outcome", ""))
+    except _BROKEN:
+        return False
+
+
 def _find(path: Path, *, partial: bool) -> Path:
     part = path if path.suffix == ".part" else part_path(path)
     if path == part and not partial:

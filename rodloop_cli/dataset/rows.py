@@ -45,6 +45,10 @@ class RowBlock:
         self._last_time = -math.inf
         self.count = 0
 
+    def continue_after(self, time: float) -> None:
+        """Expect rows later than this time only."""
+        self._last_time = time
+
     @property
     def full(self) -> bool:
         return self.count == len(self._numbers)

@@ -41,7 +41,8 @@ class RunWriter:
     `s` [S] in [0, 2 pi) and `segment` [S] (1, 2, ...) are the output points; `attributes` is what is known
     beforehand. Raises OutputError: at construction if `path` exists (without `force`), cannot be written or
     is being written by another run; later if the disk is full or the folder gone. A .part left by a killed
-    run is replaced. As a context manager it abandons a file that is not finished.
+    run is replaced, or with `resume` carried on after that many of its rows. As a context manager it abandons a file
+    that is not finished.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class RunWriter:
         segment: npt.NDArray[np.integer],
         attributes: Mapping[str, Attribute],
         force: bool = False,
+        resume: int = 0,
     ) -> None:
         self.path = Path(path)
         self.part = part_path(self.path)
@@ -66,7 +68,9 @@ class RunWriter:
         check_target(self.path, force=force)
         self._lock = self._take_lock()
         try:
-            self._dataset: netCDF4.Dataset | None = self._create(s, segment, clean)
+            self._dataset: netCDF4.Dataset | None = (
+                self._reopen(resume, clean) if resume else self._create(s, segment, clean)
+            )
         except BaseException:
             self._lock.release()
             raise
@@ -79,6 +83,11 @@ class RunWriter:
             self.flush()
         else:
             self.flush_if_due()
+
+    @property
+    def rows(self) -> int:
+        """Number of rows taken so far."""
+        return self._written + self._block.count
 
     def flush_if_due(self) -> None:
         """Bring rows to disk if they have waited long; costs nothing otherwise. For loops between rows."""
@@ -153,6 +162,21 @@ class RunWriter:
                     dataset.close()
                 _remove(self.part)
                 raise
+        return dataset
+
+    def _reopen(self, rows: int, attributes: Mapping[str, Attribute]) -> netCDF4.Dataset:
+        """The .part of a killed run, to go on after `rows` rows; later ones are the same and written once more."""
+        try:
+            dataset = netCDF4.Dataset(self.part, "a")
+            times = np.asarray(dataset.variables["t"][:rows])
+            same = dataset.getncattr("case_sha256") == attributes["case_sha256"]
+        except (OSError, RuntimeError, LookupError, AttributeError):
+            raise OutputError(f"{self.part} cannot be continued; run again without --resume") from None
+        if not same or len(times) < rows:
+            dataset.close()
+            raise OutputError(f"{self.part} does not belong to this case; run again without --resume")
+        self._written, self._kept_until = rows, float(times[-1])
+        self._block.continue_after(float(times[-1]))
         return dataset
 
     def _write_block(self, dataset: netCDF4.Dataset) -> None:

@@ -1,7 +1,8 @@
 """The motion between the ends of a step.
 
-Positions and angles integrate the polynomial through the rates at the start and the stages, one degree above the stages' own; velocities
-are that polynomial; forces and moments interpolate the stages alone, the constraint's forces at the start being of lower order.
+Positions and angles integrate the polynomial through the rates at the start and the stages, one degree above the
+stages' own; velocities are that polynomial; forces and moments interpolate the stages alone, the constraint's forces
+at the start being of lower order.
 """
 
 from typing import NamedTuple
@@ -47,7 +48,7 @@ def _moved(step: Step, fractions: Array) -> Array:
     """(k, n, 6 + m): the unknowns at fractions (k,) of the step (positions and angles; the rest has no meaning)."""
     rates = np.concatenate([step.start.rates[None], step.rates])
     weights = step.size * integrals_of_basis(np.concatenate([[0.0], step.nodes]), fractions)
-    moved = (weights @ rates.reshape(len(rates), -1)).reshape(len(fractions), *rates.shape[1:])
+    moved: Array = (weights @ rates.reshape(len(rates), -1)).reshape(len(fractions), *rates.shape[1:])
     moved += step.start.unknowns
     return moved
 

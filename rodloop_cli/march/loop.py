@@ -1,4 +1,4 @@
-"""The time loop with error control: a generator of accepted steps."""
+"""The time loop with error control."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
+from rodloop_cli.march.predictor import Past
 from rodloop_cli.march.radau import RadauStepper
-from rodloop_cli.march.refine import Refiner
+from rodloop_cli.march.refine import Finer, Refiner
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.control import CUT_AFTER_FAILURE, Controller, settle_on
@@ -22,13 +23,16 @@ ROUND_OFF = 1e-12
 LOOSEST = 1e-3
 SHARE_AT_LOOSEST = 0.6
 TIGHTENING = 0.2
-"""The share of the tolerance that one step may use is SHARE_AT_LOOSEST (tol/LOOSEST)^TIGHTENING: the errors of more and more steps
-add up. Fitted so that (error of the whole run)/tol stays of order one from 1e-3 to 1e-8; see docs/accuracy.md."""
+"""The share of the tolerance that one step may use is SHARE_AT_LOOSEST (tol/LOOSEST)^TIGHTENING: the errors of more
+and more steps add up. Fitted so that (error of the whole run)/tol stays of order one from 1e-3 to 1e-8; see
+docs/accuracy.md."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is asked of a run: the end, the accuracy in positions, the number of stages, the longest step and the first."""
+    """What is asked of a run: the end, the accuracy in positions, the number of stages, the longest step and the
+    first.
+    """
 
     t_end: float
     tol: float
@@ -38,7 +42,7 @@ class Plan:
 
     def allowance(self, scale: float) -> float:
         """Position error allowed in a step, for a departure ``scale``."""
-        share = SHARE_AT_LOOSEST * (self.tol / LOOSEST) ** TIGHTENING
+        share: float = SHARE_AT_LOOSEST * (self.tol / LOOSEST) ** TIGHTENING
         return max(ROUND_OFF, share * self.tol * scale)
 
 
@@ -46,8 +50,9 @@ class Plan:
 class Departure:
     """How far the loop has gone from the base shape that it leaves, at most 1 (the radius).
 
-    A perturbation of an unstable shape grows e^(ωt)-fold, and so does an error made early: the tolerance is meant relative to the
-    departure. ``scale`` is the size of the motion that is about to start, from the perturbation and the load.
+    A perturbation of an unstable shape grows e^(ωt)-fold, and so does an error made early: the tolerance is meant
+    relative to the departure. ``scale`` is the size of the motion that is about to start, from the perturbation and
+    the load.
     """
 
     scale: float
@@ -57,44 +62,67 @@ class Departure:
         return min(1.0, max(self.scale, float(np.abs(state.position - base).max())))
 
 
-def march(state: State, plan: Plan, refiner: Refiner, departure: Departure, work: Work) -> Iterator[Step]:
-    """Accepted steps from ``state`` to ``plan.t_end``.
+class Marcher:
+    """The march of one run; its attributes are all that a continued run needs to know.
 
-    Raises ConvergenceError, with the time and what to try, when steps become too short.
+    state: where the loop is;  base: the base shape (2, n, m + 1) on its mesh;  last: the predictor's memory;
+    proposal: the next step to try.
     """
-    stepper = RadauStepper(plan.stages, work)
-    controller = Controller(plan.stages + 1)
-    last: Step | None = None
-    proposal = min(plan.first, plan.longest)
-    base = state.position
-    while state.time < plan.t_end:
-        remaining = plan.t_end - state.time
-        size = settle_on(min(proposal, plan.longest), stepper.reusable_size)
-        # A last step of nearly the remaining length is stretched to it, never followed by a sliver.
-        size = remaining if size > 0.999 * remaining else size
-        if size < SMALLEST_STEP * plan.t_end:
-            raise ConvergenceError(_gave_up(state.time, size))
-        scale = departure.of(state, base)
-        step = stepper.step(state, last, size, plan.allowance(scale))
+
+    def __init__(self, state: State, plan: Plan, refiner: Refiner, departure: Departure, work: Work) -> None:
+        self.plan, self.work = plan, work
+        self._refiner, self._departure = refiner, departure
+        self.stepper = RadauStepper(plan.stages, work)
+        self.controller = Controller(plan.stages + 1)
+        self.state, self.base = state, state.position
+        self.last: Past | None = None
+        self.proposal = plan.first
+
+    def __iter__(self) -> Iterator[Step]:
+        """Accepted steps up to ``plan.t_end``.
+
+        Raises ConvergenceError, with the time and what to try, when steps become too short.
+        """
+        while self.state.time < self.plan.t_end:
+            step = self._attempt()
+            if step is not None:
+                yield step
+
+    def _attempt(self) -> Step | None:
+        """One step; None if it was rejected, or taken back to be done again on a finer mesh."""
+        size = self._size()
+        scale = self._departure.of(self.state, self.base)
+        step = self.stepper.step(self.state, self.last, size, self.plan.allowance(scale))
         if step is None:
-            work.newton_failures += 1
-            proposal = CUT_AFTER_FAILURE * size
-            continue
-        factor = controller.factor(size, step.error)
-        proposal = factor * size
+            self.work.newton_failures += 1
+            self.proposal = CUT_AFTER_FAILURE * size
+            return None
+        self.proposal = self.controller.factor(size, step.error) * size
         if step.error > 1:
-            work.rejected += 1
-            continue
-        finer = refiner.refined(step, plan.tol * scale)
+            self.work.rejected += 1
+            return None
+        finer = self._refiner.refined(step, self.plan.tol * scale)
         if finer is not None:
-            work.refinements += 1
-            state, base = finer.transfer(state), finer.interpolate(base)
-            last, proposal = None, size
-            continue
-        controller = controller.accepted(size, step.error)
-        work.steps += 1
-        yield step
-        state, last = step.end, step
+            self._refine(finer, size)
+            return None
+        self.controller = self.controller.accepted(size, step.error)
+        self.work.steps += 1
+        self.state, self.last = step.end, Past.of(step)
+        return step
+
+    def _size(self) -> float:
+        """The next step to try; one that nearly reaches the end is stretched to it, so that no sliver follows."""
+        remaining = self.plan.t_end - self.state.time
+        size = settle_on(min(self.proposal, self.plan.longest), self.stepper.reusable_size)
+        size = remaining if size > 0.999 * remaining else size
+        if size < SMALLEST_STEP * self.plan.t_end:
+            raise ConvergenceError(_gave_up(self.state.time, size))
+        return size
+
+    def _refine(self, finer: Finer, size: float) -> None:
+        self.work.refinements += 1
+        self.state, self.base = finer.transfer(self.state), finer.interpolate(self.base)
+        self.last, self.proposal = None, size
 
 
 def _gave_up(time: float, size: float) -> str:

@@ -1,11 +1,12 @@
 """First guess of a step's stages: the last step's polynomial, as far as it can be trusted.
 
-Extrapolating a polynomial of full degree over a longer step blows up whatever is not smooth (the bending waves that leave a stiffness
-junction at t = 0+). So it is expanded about the end of the last step, and cut where its terms stop shrinking; position
-and velocity at the start of the step are then always met.
+Extrapolating a polynomial of full degree over a longer step blows up whatever is not smooth (the bending waves that
+leave a stiffness junction at t = 0+). So it is expanded about the end of the last step, and cut where its terms stop
+shrinking; position and velocity at the start of the step are then always met.
 """
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,16 +18,31 @@ SHRINKING = 0.7
 """A Taylor term is used if it is smaller than this times the term before."""
 
 
-def predict(state: State, last: Step | None, nodes: Array, size: float) -> Array:
+class Past(NamedTuple):
+    """What the predictor remembers of the last step.
+
+    nodes: (s,);  unknowns: (s + 1, n, 6 + m) at its start and stages.
+    """
+
+    size: float
+    nodes: Array
+    unknowns: Array
+
+    @classmethod
+    def of(cls, step: Step) -> "Past":
+        """The memory of one step."""
+        return cls(step.size, step.nodes, np.concatenate([step.start.unknowns[None], step.unknowns]))
+
+
+def predict(state: State, last: Past | None, nodes: Array, size: float) -> Array:
     """(s, n, 6 + m): guess of the stages at times ``nodes`` of a step of length ``size``."""
     if last is None:
         guess: Array = state.unknowns + (size * nodes)[:, None, None] * state.rates
         return guess
-    values = np.concatenate([last.start.unknowns[None], last.unknowns])
     times = size / last.size * nodes
-    guess = _continued(np.concatenate([[0.0], last.nodes]), values, times)
+    guess = _continued(np.concatenate([[0.0], last.nodes]), last.unknowns, times)
     # The forces at the start of the last step are not those of its stages: they are the constraint's, of lower order.
-    guess[..., FX : FY + 1] = _continued(last.nodes, last.unknowns[..., FX : FY + 1], times)
+    guess[..., FX : FY + 1] = _continued(last.nodes, last.unknowns[1:, :, FX : FY + 1], times)
     return guess
 
 

@@ -1,7 +1,7 @@
 """One step of Radau IIA on the constrained equations, with an embedded estimate of the position error.
 
-With X the stage positions, U = (A^-1/Δt)(X - x0) and W = (A^-1/Δt)(U - u0): the constraint of inextensibility enters as part of the
-box system, never differentiated.
+With X the stage positions, U = (A^-1/Δt)(X - x0) and W = (A^-1/Δt)(U - u0): the constraint of inextensibility enters
+as part of the box system, never differentiated.
 """
 
 from dataclasses import replace
@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from rodloop_cli.errors import SingularSystem
-from rodloop_cli.march.predictor import predict
+from rodloop_cli.march.predictor import Past, predict
 from rodloop_cli.march.stages import Instant, Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
@@ -33,17 +33,17 @@ class RadauStepper:
         self.method = radau_iia(stages)
         self.work = work
         self._modes = _modes(stages)
-        self._linearisation: Linearisation | None = None
-        self._contraction = 1.0
+        self.linearisation: Linearisation | None = None
+        self.contraction = 1.0
 
     @property
     def reusable_size(self) -> float | None:
         """Length of step for which the present linearisation still serves."""
-        if self._linearisation is None or self._contraction > REUSE_BELOW:
+        if self.linearisation is None or self.contraction > REUSE_BELOW:
             return None
-        return self._linearisation.step
+        return self.linearisation.step
 
-    def step(self, state: State, last: Step | None, size: float, allowance: float) -> Step | None:
+    def step(self, state: State, last: Past | None, size: float, allowance: float) -> Step | None:
         """A step of length ``size`` whose ``error`` is measured against ``allowance``; None if Newton fails."""
         method, equations = self.method, state.equations
         motion = _motion(method, state, size)
@@ -51,27 +51,31 @@ class RadauStepper:
 
         def renew(fields: Fields, trusted: bool) -> Linearisation:
             self.work.factorizations += 1
-            instant = Instant.of_stage(fields, method.stages // 2 if method.stages > 1 else 0, None if trusted else state.force)
-            return Linearisation(equations, self._modes, size, instant)
+            instant = Instant.of_stage(fields, method.stages // 2, None if trusted else state.force)
+            return self.linearised(equations, size, instant)
 
         try:
-            solution, self._linearisation = solve_stages(
+            solution, self.linearisation = solve_stages(
                 equations, motion, guess, self._kept(equations, size), renew, ITERATION_ERROR * allowance
             )
         except SingularSystem:
-            solution, self._linearisation = None, None
+            solution, self.linearisation = None, None
         if solution is None:
-            self._linearisation = None
+            self.linearisation = None
             return None
         self.work.newton_iterations += solution.iterations
-        self._contraction = solution.contraction
+        self.contraction = solution.contraction
         gained = solution.unknowns - state.unknowns
         rates = (motion.rates @ gained.reshape(method.stages, -1)).reshape(gained.shape)
         error = self._error(state, solution.fields, size) / allowance
         return Step(state, size, method.nodes, solution.unknowns, rates, solution.fields, solution.iterations, error)
 
+    def linearised(self, equations: BoxEquations, size: float, instant: Instant) -> Linearisation:
+        """The factored systems of a step of this length. Raises SingularSystem."""
+        return Linearisation(equations, self._modes, size, instant)
+
     def _kept(self, equations: BoxEquations, size: float) -> Linearisation | None:
-        kept = self._linearisation
+        kept = self.linearisation
         if kept is None or kept.equations is not equations or size != self.reusable_size:
             return None
         return kept
@@ -79,10 +83,11 @@ class RadauStepper:
     def _error(self, state: State, fields: Fields, size: float) -> float:
         """The embedded estimate, in positions.
 
-        The embedded formula needs the acceleration a0 at the start but not the force: the constraint absorbs it. What is left is the
-        real box system, already factored, under the force density -ρ[λ r_X + Σ e z_U/Δt + a0], r_X = Σ e z_X/Δt + u0.
+        The embedded formula needs the acceleration a0 at the start but not the force: the constraint absorbs it. What
+        is left is the real box system, already factored, under the force density -ρ[λ r_X + Σ e z_U/Δt + a0], r_X = Σ
+        e z_X/Δt + u0.
         """
-        assert self._linearisation is not None
+        assert self.linearisation is not None
         weights, rate = self.method.embedded, self.method.eigenvalues[0].real / size
         moved = fields.position[..., :-1] - state.position[:, None, :, :-1]
         gained = fields.velocity[..., :-1] - state.velocity[:, None, :, :-1]
@@ -92,7 +97,7 @@ class RadauStepper:
         right_hand_side = equations.load_response(
             fields.cosine[-1], fields.sine[-1], -equations.mesh.density[:, None] * push
         )
-        correction = self._linearisation.systems.solve_real(right_hand_side)
+        correction = self.linearisation.systems.solve_real(right_hand_side)
         return float(np.abs(equations.displacement(fields.cosine[-1], fields.sine[-1], correction)).max())
 
 

@@ -1,7 +1,8 @@
 """Cells are halved where the shape is no longer resolved.
 
-The angles at the Gauss points of a cell are expanded in Legendre polynomials; the size of the last coefficients, times the cell's
-length, is how far the rod's position inside the cell is uncertain. The nodes are far more accurate (order 2m).
+The angles at the Gauss points of a cell are expanded in Legendre polynomials; the size of the last coefficients,
+times the cell's length, is how far the rod's position inside the cell is uncertain. The nodes are far more accurate
+(order 2m).
 """
 
 from dataclasses import dataclass
@@ -77,8 +78,9 @@ class Finer:
     def transfer(self, state: State) -> State:
         """The state on the finer mesh.
 
-        Angles and their rates carry over; positions and velocities are integrated anew from them, so that the rod is inextensible on
-        the new mesh too: an inconsistency ε would become a velocity ε/Δt in the next step. Forces and moments are mere guesses.
+        Angles and their rates carry over; positions and velocities are integrated anew from them, so that the rod is
+        inextensible on the new mesh too: an inconsistency ε would become a velocity ε/Δt in the next step. Forces and
+        moments are mere guesses.
         """
         unknowns, rates = self._unknowns(state.unknowns, 2 * np.pi), self._unknowns(state.rates, 0.0)
         closure = Closure(self.equations)
@@ -90,7 +92,9 @@ class Finer:
         return State(state.time, self.equations, unknowns, rates, position, velocity, acceleration, force)
 
     def _unknowns(self, unknowns: Array, turn: float) -> Array:
-        """Angles through the Gauss points and both ends of the old cells; the other nodal values between neighbours alone."""
+        """Angles through the Gauss points and both ends of the old cells; the other nodal values between neighbours
+        alone.
+        """
         right = np.roll(unknowns[:, :NODAL], -1, axis=0)
         right[-1, THETA] += turn
         angles = np.concatenate([unknowns[:, [THETA]], unknowns[:, NODAL:], right[:, [THETA]]], axis=1)

@@ -1,8 +1,8 @@
 """The equations of all stages of one step, solved by a simplified Newton iteration.
 
-The stages couple through the accelerations alone, by R², R the matrix of rates. In the eigenvectors of R they fall apart into one real
-and some complex box systems with λ² ρ in place of the inertia and λ ζ in place of the drag: the linearisation at one
-instant serves all of them [Hairer & Wanner, Solving ODEs II, IV.8].
+The stages couple through the accelerations alone, by R², R the matrix of rates. In the eigenvectors of R they fall
+apart into one real and some complex box systems with λ² ρ in place of the inertia and λ ζ in place of the drag: the
+linearisation at one instant serves all of them [Hairer & Wanner, Solving ODEs II, IV.8].
 """
 
 from collections.abc import Callable
@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rodloop_cli.errors import SingularSystem
-from rodloop_cli.march.state import State
 from rodloop_cli.numerics.condensed import CondensedSystems
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.physics.equations import NODAL, X, Y, BoxEquations, Fields, Motion
+from rodloop_cli.physics.equations import NODAL, BoxEquations, Fields, Motion, X, Y
 
 Complex = NDArray[np.complex128]
 
@@ -39,7 +38,9 @@ class StageModes:
 
 
 class Solution(NamedTuple):
-    """Stage values that solve the equations: unknowns (s, n, 6 + m), the fields, the iterations and their contraction."""
+    """Stage values that solve the equations: unknowns (s, n, 6 + m), the fields, the iterations and their
+    contraction.
+    """
 
     unknowns: Array
     fields: Fields
@@ -51,7 +52,7 @@ class Linearisation:
     """The factored systems of one instant and one matrix of rates."""
 
     def __init__(self, equations: BoxEquations, modes: StageModes, step: float, instant: "Instant") -> None:
-        self.equations, self.step, self._modes = equations, step, modes
+        self.equations, self.step, self.instant, self._modes = equations, step, instant, modes
         parts = equations.linearise(*instant)
         rate = (modes.eigenvalues / step)[:, None, None, None]
         responses = parts[0] + rate**2 * parts[1]
@@ -98,8 +99,8 @@ def solve_stages(
 ) -> tuple[Solution | None, Linearisation]:
     """Iterate until the position error is below ``target``, judged by the contraction; None if it does not contract.
 
-    ``renew(fields, trusted)`` makes a linearisation at the current fields, whose forces are trusted only after an iteration: those of
-    a guess contain its accelerations, which amplify its error by Δt⁻².
+    ``renew(fields, trusted)`` makes a linearisation at the current fields, whose forces are trusted only after an
+    iteration: those of a guess contain its accelerations, which amplify its error by Δt⁻².
     """
     unknowns, fields = guess, equations.fields(guess, motion)
     renewed = linearisation is None

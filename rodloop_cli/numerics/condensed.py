@@ -1,11 +1,12 @@
 """Box systems with the unknowns inside each cell eliminated.
 
-Every cell responds to its own unknowns, the b nodal values at its left end and m inner ones, by a matrix R = [[A, B], [C, D]] of size b + m:
-nodal values at its right end and inner values. The linearised system is
+Every cell responds to its own unknowns, the b nodal values at its left end and m inner ones, by a matrix R = [[A, B],
+[C, D]] of size b + m: nodal values at its right end and inner values. The linearised system is
 
     δz_{i+1} - A δz_i - B δw = r_i,      δw - C δz_i - D δw = q_i
 
-With w gone the transfer G = A + B (I - D)^-1 C couples neighbouring nodes alone: m × m inverses, all cells at once, then `cyclic`.
+With w gone the transfer G = A + B (I - D)^-1 C couples neighbouring nodes alone: m × m inverses, all cells at once,
+then `cyclic`.
 """
 
 from typing import Any

@@ -6,7 +6,8 @@ SAFETY = 0.9
 LARGEST_GROWTH = 4.0
 LARGEST_CUT = 0.2
 CUT_AFTER_FAILURE = 0.35
-"""After a Newton failure: halving often fails again, and a third of the step is still longer than the error would ask."""
+"""After a Newton failure: halving often fails again, and a third of the step is still longer than the error would
+ask."""
 
 WORTH_CHANGING = 1.2
 """A step is not lengthened by less than this when its factorization can be used again."""
@@ -26,7 +27,7 @@ class Controller:
     def factor(self, size: float, error: float) -> float:
         """By how much to multiply ``size`` after an attempt with this error (accepted if it is at most 1)."""
         error = max(error, 1e-10)
-        factor = SAFETY * error ** (-1 / self.exponent)
+        factor: float = SAFETY * error ** (-1 / self.exponent)
         if self.last_error > 0:
             trend = size / self.last_size * (max(self.last_error, 1e-2) / error) ** (1 / self.exponent)
             factor = min(factor, factor * trend)

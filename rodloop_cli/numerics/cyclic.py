@@ -1,8 +1,9 @@
 """Direct solution of periodic block-bidiagonal systems ``z_{i+1} - G_i z_i = r_i``, i = 0 … n-1, z_n = z_0.
 
-Marching z through the loop is unstable: its fundamental solutions grow like exp(s √λ). Folding the loop flat, the nodes in the
-order 0, n-1, 1, n-2, … and the equations in the order n-1, 0, n-2, 1, …, turns the system into a banded one in which block row r touches
-the block columns r-1 and r+1 alone, the wrap-around included: LAPACK's banded LU with pivoting then does it in O(n).
+Marching z through the loop is unstable: its fundamental solutions grow like exp(s √λ). Folding the loop flat, the
+nodes in the order 0, n-1, 1, n-2, … and the equations in the order n-1, 0, n-2, 1, …, turns the system into a banded
+one in which block row r touches the block columns r-1 and r+1 alone, the wrap-around included: LAPACK's banded LU
+with pivoting then does it in O(n).
 """
 
 from dataclasses import dataclass
@@ -53,16 +54,14 @@ def folded_layout(nodes: int, block: int) -> FoldedLayout:
     left, right = node_position, np.roll(node_position, -1)
     entry = np.arange(block)
     rows = equation_position[:, None] * block + entry
-    transfer = _band_index(
-        rows[:, :, None], (left[:, None] * block + entry)[:, None, :], band, nodes * block
-    )
-    identity = _band_index(rows, right[:, None] * block + entry, band, nodes * block)
+    transfer = _band_index(rows[:, :, None], (left[:, None] * block + entry)[:, None, :], band)
+    identity = _band_index(rows, right[:, None] * block + entry, band)
     return FoldedLayout(
         nodes, block, band, node_order, node_position, equation_order, transfer.ravel(), identity.ravel()
     )
 
 
-def _band_index(row: Indices, column: Indices, band: int, columns: int) -> Indices:
+def _band_index(row: Indices, column: Indices, band: int) -> Indices:
     """Flat index in Fortran-ordered storage with ``band`` extra rows for the fill-in."""
     index: Indices = (2 * band + row - column) + column * (3 * band + 1)
     return index

@@ -46,7 +46,7 @@ def gauss_rule(m: int) -> GaussRule:
     samples_to_coefficients = np.linalg.inv(vandermonde)
     antiderivatives = legendre.legint(samples_to_coefficients, lbnd=-1, axis=0)
     to_points = (legendre.legvander(nodes, m) @ antiderivatives).T / 2
-    return GaussRule((nodes + 1) / 2, weights / 2, to_points, samples_to_coefficients.T.copy())
+    return GaussRule((nodes + 1) / 2, weights / 2, to_points, np.array(samples_to_coefficients.T, dtype=float))
 
 
 def lagrange_matrix(nodes: Array, points: Array) -> Array:

@@ -16,7 +16,8 @@ Complex = NDArray[np.complex128]
 class RadauIIA:
     """An s-stage Radau IIA method, A^-1 diagonalised: ``inverse @ vectors = vectors @ diag(eigenvalues)``.
 
-    Complex eigenvalues come in pairs; of each pair only the one with positive imaginary part is kept, the real one first.
+    Complex eigenvalues come in pairs; of each pair only the one with positive imaginary part is kept, the real one
+    first.
 
     nodes: (s,) with c_s = 1;  matrix: (s, s) A;  inverse: (s, s) A^-1;
     eigenvalues: (E,) with E = (s + 1)/2;
@@ -43,7 +44,7 @@ def radau_iia(stages: int) -> RadauIIA:
     """The method with an odd number of stages; order 2s - 1."""
     nodes = _right_radau_points(stages)
     matrix = _collocation_matrix(nodes)
-    inverse = np.linalg.inv(matrix)
+    inverse: Array = np.linalg.inv(matrix).astype(float)
     eigenvalues, vectors = np.linalg.eig(inverse)
     kept = np.flatnonzero(eigenvalues.imag > -1e-9)
     kept = kept[np.argsort(np.abs(eigenvalues[kept].imag))]
@@ -64,8 +65,8 @@ def radau_iia(stages: int) -> RadauIIA:
 def embedded_weights(nodes: Array, inverse: Array, real_eigenvalue: float) -> Array:
     """Weights e (s,) of the error estimate, generalised from RADAU5 to any s.
 
-    The formula with weight 1/γ on the start of the step, γ the real eigenvalue of A^-1, and of order s on the nodes (0, c)
-    differs from the method by ``(f_0 + Σ e_i z_i/Δt) Δt/γ``, z_i the stage increments.
+    The formula with weight 1/γ on the start of the step, γ the real eigenvalue of A^-1, and of order s on the nodes
+    (0, c) differs from the method by ``(f_0 + Σ e_i z_i/Δt) Δt/γ``, z_i the stage increments.
     """
     moments = np.zeros(len(nodes))
     moments[0] = -1.0 / real_eigenvalue
@@ -75,7 +76,9 @@ def embedded_weights(nodes: Array, inverse: Array, real_eigenvalue: float) -> Ar
 
 
 def extrapolation(nodes: Array, ratio: float) -> Array:
-    """(s, nodes): the polynomial through values at ``nodes`` of the last step, at the stages of a next step ratio times as long."""
+    """(s, nodes): the polynomial through values at ``nodes`` of the last step, at the stages of a next step ratio
+    times as long.
+    """
     stages = nodes[nodes > 0]
     return lagrange_matrix(nodes, 1 + ratio * stages)
 

@@ -8,8 +8,8 @@ MOST_EVALUATIONS = 200
 def bracketed_root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:
     """A point where ``function`` changes sign, to ``tolerance``, on the side of ``high``; ends must differ in sign.
 
-    Secant steps inside the bracket; a bisection whenever the last two steps did not halve it, which also serves a function that
-    jumps from one sign to the other.
+    Secant steps inside the bracket; a bisection whenever the last two steps did not halve it, which also serves a
+    function that jumps from one sign to the other.
     """
     at_low, at_high = function(low), function(high)
     positive = at_high > 0

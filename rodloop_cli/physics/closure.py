@@ -1,4 +1,6 @@
-"""Positions and velocities from angles and their rates: closed to round-off, inextensible on the mesh, with a given centre."""
+"""Positions and velocities from angles and their rates: closed to round-off, inextensible on the mesh, with a given
+centre.
+"""
 
 import numpy as np
 
@@ -14,7 +16,9 @@ class Closure:
         self._weights = equations.mesh.lengths[:, None] * equations.rule.weights
 
     def position(self, unknowns: Array, centre: Array) -> Array:
-        """(2, n, m + 1); writes nodal positions, and the least change of the angles that closes the loop, into ``unknowns``."""
+        """(2, n, m + 1); writes nodal positions, and the least change of the angles that closes the loop, into
+        ``unknowns``.
+        """
         tangent = self._tangent(unknowns)
         for _ in range(4):
             gap = np.einsum("cnm,nm->c", tangent, self._weights)
@@ -23,7 +27,9 @@ class Closure:
         return self._integrate(unknowns, tangent, centre)
 
     def velocity(self, unknowns: Array, rates: Array, centre: Array) -> Array:
-        """(2, n, m + 1) from v' = θ_t n; writes nodal velocities, and the least change that closes the loop, into ``rates``."""
+        """(2, n, m + 1) from v' = θ_t n; writes nodal velocities, and the least change that closes the loop, into
+        ``rates``.
+        """
         tangent = self._tangent(unknowns)
         normal = _normal(tangent)
         gap = np.einsum("cnm,nm,nm->c", normal, rates[:, NODAL:], self._weights)

@@ -1,7 +1,7 @@
 """Energies of the loop and the power the film takes, as in Eqs. (15) and (16); B1/R and its rate, absolute.
 
-All integrals use the Gauss weights of the collocation, which makes them as accurate as the nodal values. Arrays carry any leading
-dimensions …; on Gauss points they end in (n, m).
+All integrals use the Gauss weights of the collocation, which makes them as accurate as the nodal values. Arrays carry
+any leading dimensions …; on Gauss points they end in (n, m).
 """
 
 import numpy as np

@@ -5,12 +5,13 @@
     Fy' = -p cos θ + ζ⊥[(γ-1) sinθ cosθ u + (γ sin²θ + cos²θ) v] + ρ a_y                             (12)
     M'  = Fx sin θ - Fy cos θ + ρ ι θ_tt,   θ' = M/b                                                (13), and (1) for ι
 
-Prime is d/ds; (u, v) velocity, (a_x, a_y) acceleration; b = B/B1, ρ = ρ/ρ1, ι the rotary inertia I/(A R²), zero in the paper.
-In a cell the only free values are the angles Θ at the m Gauss points and the six nodal values at its left end: position,
-force and moment follow by integration. What is left to solve: Θ must be the integral of M/b, and each cell must end where
-the next begins (14).
+Prime is d/ds; (u, v) velocity, (a_x, a_y) acceleration; b = B/B1, ρ = ρ/ρ1, ι the rotary inertia I/(A R²), zero in
+the paper. In a cell the only free values are the angles Θ at the m Gauss points and the six nodal values at its left
+end: position, force and moment follow by integration. What is left to solve: Θ must be the integral of M/b, and each
+cell must end where the next begins (14).
 
-Unknowns are stored cell by cell, (..., n, 6 + m): x, y, θ, M, Fx, Fy at the left node, then Θ_1 … Θ_m. θ grows by 2π round the loop.
+Unknowns are stored cell by cell, (..., n, 6 + m): x, y, θ, M, Fx, Fy at the left node, then Θ_1 … Θ_m. θ grows by 2π
+round the loop.
 """
 
 from dataclasses import dataclass
@@ -144,7 +145,9 @@ class BoxEquations:
         return drag
 
     def displacement(self, cosine: Array, sine: Array, correction: Array) -> Array:
-        """(2, n, m + 1): how far a small ``correction`` (n, 6 + m) of the unknowns moves the Gauss points and right ends."""
+        """(2, n, m + 1): how far a small ``correction`` (n, 6 + m) of the unknowns moves the Gauss points and right
+        ends.
+        """
         turned = np.stack([-sine, cosine]) * (correction[:, NODAL:] * self._length)
         moved: Array = turned @ self._integrate + correction[:, X : Y + 1].T[..., None]
         return moved
@@ -152,8 +155,9 @@ class BoxEquations:
     def linearise(self, cosine: Array, sine: Array, force: Array, velocity: Array) -> Array:
         """(3 or 2, n, 6 + m, 6 + m): parts L0, L1[, L2] of the cells' response L0 + λ² L1 + λ L2 to their own unknowns.
 
-        λ stands for the time derivative; L2 is there only with drag. Rows: the six values at the cell's right end, then the
-        integral of M/b at the Gauss points. Arguments at one instant: cosine, sine (n, m); force, velocity (2, n, m).
+        λ stands for the time derivative; L2 is there only with drag. Rows: the six values at the cell's right end,
+        then the integral of M/b at the Gauss points. Arguments at one instant: cosine, sine (n, m); force, velocity
+        (2, n, m).
         """
         parts, (n, m) = 3 if self.load.zeta_perp else 2, cosine.shape
         size = NODAL + m

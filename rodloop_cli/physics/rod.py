@@ -1,7 +1,7 @@
 """The rod: its segments, and the mesh of cells laid on them.
 
-Arclength s runs counter-clockwise from 0 to 2π (lengths in R). Segment 1 starts at s = 0. A node stands on every junction, so that
-stiffness and density are constant inside a cell.
+Arclength s runs counter-clockwise from 0 to 2π (lengths in R). Segment 1 starts at s = 0. A node stands on every
+junction, so that stiffness and density are constant inside a cell.
 """
 
 from dataclasses import dataclass
@@ -44,7 +44,9 @@ class Rod:
         return len({segment.stiffness for segment in self.segments}) > 1
 
     def segment_at(self, s: Array) -> NDArray[np.int_]:
-        """(S,): index of the segment that holds each s in [0, 2π); a junction belongs to the segment that starts there."""
+        """(S,): index of the segment that holds each s in [0, 2π); a junction belongs to the segment that starts
+        there.
+        """
         return np.searchsorted(self.ends[:-1], s, side="right")
 
 
@@ -92,7 +94,12 @@ class Mesh:
         middles = (self.edges[:-1] + self.edges[1:]) / 2
         edges = np.sort(np.concatenate([self.edges, middles[flagged]]))
         repeats = np.where(flagged, 2, 1)
-        return Mesh(edges, *(np.repeat(a, repeats) for a in (self.segment, self.stiffness, self.density)))
+        return Mesh(
+            edges,
+            np.repeat(self.segment, repeats),
+            np.repeat(self.stiffness, repeats),
+            np.repeat(self.density, repeats),
+        )
 
     def points(self, unit_points: Array) -> Array:
         """(n, points): arclength of points given in the unit cell."""

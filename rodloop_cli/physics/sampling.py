@@ -22,7 +22,9 @@ class Sampler:
         self.segment = mesh.segment[self.cell]
 
     def __call__(self, values: Array, turn: float = 0.0) -> Array:
-        """(…, S) from values (…, n, m + 1) at the Gauss points and right ends; ``turn`` is what they gain round the loop."""
+        """(…, S) from values (…, n, m + 1) at the Gauss points and right ends; ``turn`` is what they gain round the
+        loop.
+        """
         left = values[..., self.cell - 1, -1]
         if turn:
             left -= turn * (self.cell == 0)

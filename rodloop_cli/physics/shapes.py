@@ -1,8 +1,9 @@
 """Shapes of the unloaded loop: tangent angle along the arclength, and its perturbation.
 
-A base shape displaced along its outward normal by δ(s) turns its tangent by -atan2(δ', 1 + κδ) and stretches by hypot(1 + κδ, δ').
-The stretch is taken out by a new arclength, so that the perturbed shape is a state of the inextensible rod: a perturbation that keeps
-the parameter would be thrown back by the constraint in the first time step, with velocities ε/Δt.
+A base shape displaced along its outward normal by δ(s) turns its tangent by -atan2(δ', 1 + κδ) and stretches by
+hypot(1 + κδ, δ'). The stretch is taken out by a new arclength, so that the perturbed shape is a state of the
+inextensible rod: a perturbation that keeps the parameter would be thrown back by the constraint in the first time
+step, with velocities ε/Δt.
 """
 
 from collections.abc import Callable
@@ -54,7 +55,8 @@ def slope(waves: tuple[Wave, ...], s: Array) -> Array:
 
 @dataclass(frozen=True)
 class Shape:
-    """A closed shape of length 2π: tangent angle and curvature along s; smooth between ``breaks``, which include 0 and 2π.
+    """A closed shape of length 2π: tangent angle and curvature along s; smooth between ``breaks``, which include 0
+    and 2π.
 
     centre: of the material points, each weighted by arclength.
     """
@@ -73,9 +75,9 @@ def circle() -> Shape:
 def perturbed(base: Shape, waves: tuple[Wave, ...], rod: Rod) -> Shape:
     """The base displaced by the waves and given a new arclength.
 
-    A circle is scaled as a whole, and its arclength counted from s = 0. Where the base has kinks of curvature at stiffness junctions,
-    each segment is scaled by itself, so that the kinks stay on the junctions (the gap that this opens is closed when the shape is laid
-    on a mesh).
+    A circle is scaled as a whole, and its arclength counted from s = 0. Where the base has kinks of curvature at
+    stiffness junctions, each segment is scaled by itself, so that the kinks stay on the junctions (the gap that this
+    opens is closed when the shape is laid on a mesh).
     """
     if not waves:
         return base

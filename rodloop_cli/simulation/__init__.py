@@ -1,7 +1,7 @@
 """From a case to its result: the only place that composes all parts.
 
-`start` builds the state at t = 0, `run` follows the steps, `record` makes rows of them, `account` adds up energies, `events`
-finds what happens between rows.
+`start` builds the state at t = 0, `run` follows the steps, `record` makes rows of them, `account` adds up energies,
+`events` finds what happens between rows.
 """
 
 from typing import TYPE_CHECKING
@@ -21,7 +21,7 @@ def simulate(case: Case, progress: Progress | None = None) -> "xarray.Dataset":
 
     Raises ConvergenceError if the solver gives up.
     """
-    from rodloop_cli.dataset.memory import MemoryRows
+    from rodloop_cli.dataset.memory import MemoryRows  # noqa: PLC0415  xarray takes a second to import
 
     run = Run.of(case)
     rows = MemoryRows(s=run.recorder.s, segment=run.recorder.segment, attributes=run.attributes)

@@ -45,6 +45,16 @@ class EnergyAccount:
         """Add what the film took in the whole step."""
         self._dissipated += float(self._taken(step, np.array([1.0]), quadrature)[0])
 
+    def memory(self) -> tuple[float, ...]:
+        """What a continued run needs to know."""
+        first = self._first or (0.0, 0.0)
+        return (self._dissipated, *first, self.largest_residual, self.largest_change)
+
+    def restore(self, memory: Array) -> None:
+        """Go on where the account with this memory was."""
+        self._dissipated, total, surface, self.largest_residual, self.largest_change = map(float, memory)
+        self._first = total, surface
+
     def _residual(self, total: Array, surface: Array) -> Array:
         if self._first is None:
             self._first = float(total[0]), float(surface[0])

@@ -12,8 +12,8 @@ from rodloop_cli.march.dense import shapes_at
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.roots import bracketed_root
-from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.clearance import crossing_indicator
+from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.crossing import crosses_itself
 from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.equations import BoxEquations
@@ -31,9 +31,9 @@ CROSSING_POINTS = 400
 class CrossingWatch:
     """Finds the first time at which the centreline crosses itself.
 
-    A shape without concave parts cannot cross, and one that is a distance d from crossing cannot cross before some point has moved by
-    d/2. Otherwise the shapes at the stages of a step are tested, so that a crossing that comes and goes within a step is seen if it
-    lasts as long as the gap between two stages.
+    A shape without concave parts cannot cross, and one that is a distance d from crossing cannot cross before some
+    point has moved by d/2. Otherwise the shapes at the stages of a step are tested, so that a crossing that comes and
+    goes within a step is seen if it lasts as long as the gap between two stages.
     """
 
     def __init__(self) -> None:
@@ -61,8 +61,8 @@ class CrossingWatch:
     def _keep(self, step: Step) -> None:
         """Remember the end of the step and how far its points can move without any crossing.
 
-        The clearance is that of a polygon through the points of the cells, whose sides lie inside the bends by κ h²/8. Strands that are not
-        opposed now may come to be in a bend that closes, whose size is 1/κ.
+        The clearance is that of a polygon through the points of the cells, whose sides lie inside the bends by κ
+        h²/8. Strands that are not opposed now may come to be in a bend that closes, whose size is 1/κ.
         """
         position = self._reference = step.fields.position[:, -1]
         mesh = step.start.equations.mesh
@@ -92,7 +92,7 @@ class CrossingWatch:
     def _use(self, equations: BoxEquations) -> None:
         if equations is not self._equations:
             self._equations, self._safe = equations, 0.0
-            points = np.arange(CROSSING_POINTS) * (LENGTH / CROSSING_POINTS)
+            points = np.linspace(0.0, LENGTH, CROSSING_POINTS, endpoint=False)
             self._sampler = Sampler(equations.mesh, equations.rule, points)
 
 
@@ -102,20 +102,20 @@ class AreaExtrema:
 
     minima: list[tuple[float, float]] = field(default_factory=list)
     maxima: list[tuple[float, float]] = field(default_factory=list)
-    _sign: float = 0.0
+    sign: float = 0.0
     _equations: BoxEquations | None = None
     _quadrature: Quadrature | None = None
 
-    def watch(self, step: Step) -> None:
-        """Look for changes of sign of dA/dt between the stages of the step."""
+    def watch(self, step: Step, until: float | None = None) -> None:
+        """Look for changes of sign of dA/dt between the stages of the step, those before ``until``."""
         quadrature = self._quadrature_on(step.start.equations)
         rates = quadrature.area_rate(step.fields.velocity[..., :-1], (step.fields.cosine, step.fields.sine))
         before = 0.0
         for node, rate in zip(step.nodes, rates, strict=True):
             sign = float(np.sign(rate))
-            if self._sign * sign < 0:
-                self._locate(step, quadrature, before, float(node), falling=self._sign < 0)
-            self._sign = sign or self._sign
+            if self.sign * sign < 0:
+                self._locate(step, quadrature, (before, float(node)), np.inf if until is None else until)
+            self.sign = sign or self.sign
             before = float(node)
 
     def _quadrature_on(self, equations: BoxEquations) -> Quadrature:
@@ -123,16 +123,20 @@ class AreaExtrema:
             self._equations, self._quadrature = equations, Quadrature(equations.mesh, equations.rule)
         return self._quadrature
 
-    def _locate(self, step: Step, quadrature: Quadrature, before: float, after: float, falling: bool) -> None:
+    def _locate(self, step: Step, quadrature: Quadrature, between: tuple[float, float], until: float) -> None:
         def at(fraction: float) -> tuple[float, float]:
             shapes = shapes_at(step, np.array([step.start.time + fraction * step.size]))
             area = quadrature.area(shapes.position[..., :-1], shapes.tangent)[0]
             return float(quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)[0]), float(area)
 
+        before, after = between
+        falling = self.sign < 0
         if at(before)[0] * at(after)[0] > 0:
             return
         fraction = bracketed_root(lambda f: at(f)[0], before, after, TIME_PRECISION)
-        (self.minima if falling else self.maxima).append((step.start.time + fraction * step.size, at(fraction)[1]))
+        time = step.start.time + fraction * step.size
+        if time <= until:
+            (self.minima if falling else self.maxima).append((time, at(fraction)[1]))
 
     @property
     def period(self) -> float | None:
@@ -145,8 +149,9 @@ class AreaExtrema:
 class RestWatch:
     """Tells when a damped loop has come to rest at an equilibrium.
 
-    Slowness alone is no proof: a strongly damped loop creeps. Once it is slow, the equilibrium nearest to its shape is found by the static
-    solver; at rest means within ``tol`` of it. Asked again only after the loop has slowed down tenfold.
+    Slowness alone is no proof: a strongly damped loop creeps. Once it is slow, the equilibrium nearest to its shape
+    is found by the static solver; at rest means within ``tol`` of it. Asked again only after the loop has slowed down
+    tenfold.
     """
 
     def __init__(self, tol: float) -> None:

@@ -24,8 +24,7 @@ ROUND_OFF = 1e-12
 
 def output_points(count: int) -> Array:
     """(S,): uniform arclengths in [0, 2π)."""
-    points: Array = np.arange(count) * (LENGTH / count)
-    return points
+    return np.linspace(0.0, LENGTH, count, endpoint=False)
 
 
 class Recorder:
@@ -37,12 +36,14 @@ class Recorder:
         self.account = EnergyAccount(load)
         self._times = np.array(times)
         self._next = 0
+        self.begun = False
         self._equations: BoxEquations | None = None
         self._sampler: Sampler
         self._quadrature: Quadrature
 
     def start(self, step: Step) -> Iterator[Row]:
         """The row at t = 0 if it is asked for, from the negligible step that gave the forces there."""
+        self.begun = True
         self._use(step.start.equations)
         rows = list(self._rows(step, shapes_at(step, np.array([step.start.time])), size=0.0, iterations=0))
         if self._times[0] <= 0:
@@ -67,6 +68,16 @@ class Recorder:
             for row in self._rows(step, shapes_at(step, times), step.size, step.newton_iterations):
                 yield row | {"crossing": self._crossing(row, crossed)}
         self.account.close(step, self._quadrature)
+
+    def memory(self) -> Array:
+        """What a continued run needs to know."""
+        return np.array([float(self._next), *self.account.memory()])
+
+    def restore(self, memory: Array) -> None:
+        """Go on where the recorder with this memory was."""
+        self.begun = True
+        self._next = int(memory[0])
+        self.account.restore(memory[1:])
 
     @staticmethod
     def _crossing(row: Row, crossed: float | None) -> int:

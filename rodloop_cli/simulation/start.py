@@ -35,7 +35,9 @@ class Start:
 
 
 def start(case: Case) -> Start:
-    """Build the initial state of a case. Raises ConvergenceError where the equilibrium or its forces cannot be found."""
+    """Build the initial state of a case. Raises ConvergenceError where the equilibrium or its forces cannot be
+    found.
+    """
     rod, load = rod_of(case), load_of(case)
     waves = waves_of(case)
     rule = gauss_rule(points_per_cell(case))
@@ -79,14 +81,14 @@ def points_per_cell(case: Case) -> int:
 def growth_time(load: Load, rod: Rod) -> float:
     """Time scale of the motion of the whole loop under this load."""
     heaviest = max(s.density for s in rod.segments)
-    return sqrt(heaviest) / (1 + abs(load.p)) ** 0.75
+    return float(sqrt(heaviest) / (1 + abs(load.p)) ** 0.75)
 
 
 def fastest_time(load: Load, rod: Rod) -> float:
     """Time scale of the fastest motion that the load starts."""
     lightest = min(1.0, *(s.density for s in rod.segments)) if len(rod.segments) > 1 else 1.0
     stiffest = max(s.stiffness for s in rod.segments)
-    return sqrt(lightest / stiffest) / (1 + abs(load.p)) ** 0.75
+    return float(sqrt(lightest / stiffest) / (1 + abs(load.p)) ** 0.75)
 
 
 def _resolved(case: Case, rod: Rod, load: Load, rule: GaussRule, waves: tuple[Wave, ...]) -> tuple[Mesh, np.ndarray]:

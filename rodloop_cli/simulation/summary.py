@@ -1,6 +1,7 @@
 """What a run found and what it cost."""
 
-from dataclasses import asdict, dataclass
+import time
+from dataclasses import asdict, dataclass, field
 
 from rodloop_cli.march.work import Work
 from rodloop_cli.simulation.events import AreaExtrema
@@ -11,18 +12,25 @@ class Summary:
     """Filled in while the run goes on."""
 
     work: Work
-    extrema: AreaExtrema
+    extrema: AreaExtrema = field(default_factory=AreaExtrema)
     outcome: str = ""
     first_crossing: float | None = None
     cells: int = 0
     energy_residual: float = 0.0
     energy_change: float = 0.0
-    wall_seconds: float = 0.0
+    spent: float = 0.0
+    """Seconds of a run that this one continues."""
+    _clock: float = field(default_factory=time.perf_counter)
+
+    @property
+    def seconds(self) -> float:
+        """Wall time since the initial state was found, that of continued runs included."""
+        return self.spent + time.perf_counter() - self._clock
 
     @property
     def totals(self) -> dict[str, int | float]:
         """Counters for the file."""
-        return {**asdict(self.work), "cells": self.cells, "wall_seconds": self.wall_seconds}
+        return {**asdict(self.work), "cells": self.cells, "wall_seconds": self.seconds}
 
     @property
     def findings(self) -> dict[str, int | float]:

@@ -1,15 +1,16 @@
 """What the tolerance delivers: position error over tol, on reference and random cases.
 
-The error is the largest distance between the stored positions of a run and of the same run at tol/1000, up to the first crossing, after
-the rigid motion between the two shapes is taken out.
+The error is the largest distance between the stored positions of a run and of the same run at tol/1000, up to the
+first crossing, after the rigid motion between the two shapes is taken out.
 
     python -m scripts.benchmarks.tolerance [--random N] [--tols 1e-3,1e-4,…]
 """
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.simulation import Run
 
 TIGHTER = 1e-3
-REFERENCES = {
+REFERENCES: dict[str, dict[str, Any]] = {
     "homogeneous p=3.8": {"p": 3.8, "t_end": 9.6, "perturbation": (ModePerturbation(mode=2, amplitude=5e-3),)},
     "stiffness 5 p=3.8": {"p": 3.8, "stiffness_ratio": 5.0, "t_end": 2.26},
     "density 5 p=3.8": {
@@ -60,12 +61,12 @@ class Positions:
     def flush_if_due(self) -> None:
         """Nothing waits."""
 
-    def finish(self, attributes: dict[str, Attribute]) -> None:
+    def finish(self, attributes: Mapping[str, Attribute]) -> None:
         """Keep the outcome."""
         self.attributes = dict(attributes)
 
 
-def random_cases(count: int, seed: int = 20260614) -> Iterator[tuple[str, dict[str, object]]]:
+def random_cases(count: int, seed: int = 20260614) -> Iterator[tuple[str, dict[str, Any]]]:
     """Loops of all kinds: loads of both signs, contrasts up to 10, drag in half of them."""
     generator = np.random.default_rng(seed)
     for i in range(count):
@@ -84,15 +85,17 @@ def random_cases(count: int, seed: int = 20260614) -> Iterator[tuple[str, dict[s
         yield f"random {i}", case
 
 
-def solve(case: dict[str, object], tol: float) -> Positions:
+def solve(case: dict[str, Any], tol: float) -> Positions:
     """One run."""
     positions = Positions()
-    Run.of(Case(**case, tol=tol)).into(positions)  # type: ignore[arg-type]
+    Run.of(Case(**case, tol=tol)).into(positions)
     return positions
 
 
 def error(run: Positions, reference: Positions) -> float:
-    """Largest distance in the frame of the loop; rows at equal times only (a crossing ends both runs, not quite together)."""
+    """Largest distance in the frame of the loop; rows at equal times only (a crossing ends both runs, not quite
+    together).
+    """
     count = sum(a == b for a, b in zip(run.times, reference.times, strict=False))
     return max(distance(a, b) for a, b in zip(run.shapes[:count], reference.shapes[:count], strict=True))
 

@@ -1,0 +1,74 @@
+"""A run that was interrupted and continued equals the uninterrupted one."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rodloop_cli.case import parse_case
+from rodloop_cli.dataset import RunWriter, open_run
+from rodloop_cli.dataset.checkpoint import checkpoint_path
+from rodloop_cli.errors import Interrupted
+from rodloop_cli.simulation import Run
+from rodloop_cli.simulation.resume import Keeper, resumed
+
+CASES = {
+    "radau": "p: 3.8\nstiffness_ratio: 5\nt_end: 1.5\nzeta_perp: 0.3\ntol: 1e-4\n",
+    "refined": "p: 16\nt_end: 0.9\ntol: 1e-5\nperturbation: [{mode: 3, amplitude: 1e-2}]\n",
+    "bdf2": "p: 3.8\nt_end: 0.5\nscheme: bdf2\nN: 40\ndt: 0.01\nperturbation: [{mode: 2, amplitude: 1e-2}]\n",
+}
+
+
+def writer_of(path: Path, run: Run, rows: int = 0) -> RunWriter:
+    recorder = run.recorder
+    return RunWriter(path, s=recorder.s, segment=recorder.segment, attributes=run.attributes, resume=rows)
+
+
+def interrupted_after(steps: int, path: Path, text: str) -> None:
+    run = Run.of(parse_case(text))
+    writer = writer_of(path, run)
+    keeper = Keeper(writer, run)
+
+    def ask(_: float) -> None:
+        keeper.interrupted = "interrupted" if run.work.steps >= steps else None
+
+    with writer, pytest.raises(Interrupted, match="continue with --resume"):
+        run.into(writer, ask, keeper)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_continued_run_equals_the_uninterrupted_one(tmp_path: Path, name: str) -> None:
+    whole, path = tmp_path / "whole.nc", tmp_path / "parts.nc"
+    run = Run.of(parse_case(CASES[name]))
+    with writer_of(whole, run) as writer:
+        run.into(writer)
+    interrupted_after(7, path, CASES[name])
+    assert checkpoint_path(path).exists()
+
+    again = Run.of(parse_case(CASES[name]))
+    rows = resumed(path, again)
+    assert rows > 0
+    with writer_of(path, again, rows) as writer:
+        again.into(writer)
+
+    with open_run(whole) as first, open_run(path) as second:
+        assert first.sizes == second.sizes
+        for variable in first.data_vars:
+            np.testing.assert_allclose(second[variable], first[variable], rtol=0, atol=1e-12, err_msg=str(variable))
+        same = ("outcome", "total_steps", "total_newton_iterations", "total_refinements", "largest_energy_residual")
+        assert {name: first.attrs[name] for name in same} == {name: second.attrs[name] for name in same}
+
+
+def test_a_checkpoint_of_another_case_is_not_used(tmp_path: Path) -> None:
+    path = tmp_path / "run.nc"
+    interrupted_after(5, path, CASES["radau"])
+    other = Run.of(parse_case(CASES["radau"].replace("3.8", "3.9")))
+    assert resumed(path, other) == 0
+
+
+def test_a_damaged_checkpoint_is_not_used(tmp_path: Path) -> None:
+    path = tmp_path / "run.nc"
+    interrupted_after(5, path, CASES["radau"])
+    checkpoint = checkpoint_path(path)
+    checkpoint.write_bytes(checkpoint.read_bytes()[:-2000])
+    assert resumed(path, Run.of(parse_case(CASES["radau"]))) == 0
