@@ -40,8 +40,10 @@ def run(
         return
     check_target(path, force=force)
 
+    from rodloop_cli.numerics.allocator import keep_freed_memory
     from rodloop_cli.simulation import Run
 
+    keep_freed_memory()
     prepared = Run.of(case)
     summary = simulated(prepared, path, force=force, resume=resume)
     if not current_settings().quiet:

@@ -50,13 +50,19 @@ def gauss_rule(m: int) -> GaussRule:
 
 
 def lagrange_matrix(nodes: Array, points: Array) -> Array:
-    """(points, nodes): values of the Lagrange basis on ``nodes`` at ``points``; exact where they coincide."""
-    difference = points[:, None] - nodes[None, :]
-    gaps = nodes[:, None] - nodes[None, :]
-    np.fill_diagonal(gaps, 1.0)
-    others = np.broadcast_to(difference[:, None, :], (len(points), len(nodes), len(nodes))).copy()
-    others[:, np.arange(len(nodes)), np.arange(len(nodes))] = 1.0
-    basis: Array = (others / gaps).prod(axis=2)
+    """(points, nodes): values of the Lagrange basis on ``nodes`` at ``points``, by the barycentric formula.
+
+    A point on a node gets that node's value exactly.
+    """
+    distance = np.subtract.outer(points, nodes)
+    on_node = distance == 0
+    distance[on_node] = 1.0
+    gaps = np.subtract.outer(nodes, nodes)
+    gaps.flat[:: len(nodes) + 1] = 1.0
+    basis: Array = distance.prod(axis=1)[:, None] / (distance * gaps.prod(axis=1))
+    hits = on_node.any(axis=1)
+    if hits.any():
+        basis[hits] = on_node[hits]
     return basis
 
 

@@ -24,8 +24,9 @@ from rodloop_cli.statics import relax
 TIME_PRECISION = 1e-9
 """Of the step in which an event is located."""
 
-CROSSING_POINTS = 400
-"""Points of the polygon that is tested; its sides leave the curve by 3e-5 κ."""
+WATCHED_POINTS, LOCATED_POINTS = 128, 400
+"""Points of the polygons on which a crossing is noticed and located; their sides leave the curve by 3e-4 κ and 3e-5
+κ."""
 
 
 class CrossingWatch:
@@ -38,7 +39,8 @@ class CrossingWatch:
 
     def __init__(self) -> None:
         self._equations: BoxEquations | None = None
-        self._sampler: Sampler
+        self._watched: Sampler
+        self._located: Sampler
         self._reference: Array
         self._safe = 0.0
 
@@ -51,9 +53,9 @@ class CrossingWatch:
         if self._safe and np.abs(step.fields.position - self._reference[:, None]).max() < self._safe:
             return None
         before = 0.0
-        for node, shape in zip(step.nodes, self._sampler(step.fields.position).swapaxes(0, 1), strict=True):
+        for node, shape in zip(step.nodes, self._watched(step.fields.position).swapaxes(0, 1), strict=True):
             if crosses_itself(*shape):
-                return self._located(step, before, float(node))
+                return self._locate(step, before, float(node))
             before = float(node)
         self._keep(step)
         return None
@@ -72,12 +74,12 @@ class CrossingWatch:
         # Half, as both strands move; over √2, as components are compared.
         self._safe = max(0.0, min(clearance, 1 / sharpest) / 2 / np.sqrt(2))
 
-    def _located(self, step: Step, before: float, after: float) -> float:
+    def _locate(self, step: Step, before: float, after: float) -> float:
         def clearance(fraction: float) -> float:
             position = shapes_at(step, np.array([step.start.time + fraction * step.size])).position
-            return crossing_indicator(*self._sampler(position)[:, 0])
+            return crossing_indicator(*self._located(position)[:, 0])
 
-        # The dense output and the stages differ by the error of the step, and so may their verdicts.
+        # The polygons, and the dense output and the stages, differ a little, and so may their verdicts.
         if clearance(before) <= 0:
             before = 0.0
         if clearance(after) > 0:
@@ -92,8 +94,10 @@ class CrossingWatch:
     def _use(self, equations: BoxEquations) -> None:
         if equations is not self._equations:
             self._equations, self._safe = equations, 0.0
-            points = np.linspace(0.0, LENGTH, CROSSING_POINTS, endpoint=False)
-            self._sampler = Sampler(equations.mesh, equations.rule, points)
+            self._watched, self._located = (
+                Sampler(equations.mesh, equations.rule, np.linspace(0.0, LENGTH, points, endpoint=False))
+                for points in (WATCHED_POINTS, LOCATED_POINTS)
+            )
 
 
 @dataclass

@@ -103,8 +103,9 @@ class Recorder:
     def _profiles(self, shapes: Shapes) -> dict[str, Array]:
         """(k, S) of every profile."""
         sample = self._sampler
-        (x, y), (u, v), (fx, fy) = sample(shapes.position), sample(shapes.velocity), sample(shapes.force)
-        theta, moment = sample(shapes.theta, LENGTH), sample(shapes.moment)
+        vectors = np.concatenate([shapes.position, shapes.velocity, shapes.force, shapes.moment[None]])
+        x, y, u, v, fx, fy, moment = sample(vectors)
+        theta = sample(shapes.theta, LENGTH)
         cosine, sine = np.cos(theta), np.sin(theta)
         return {
             "x": x,

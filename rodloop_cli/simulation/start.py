@@ -56,7 +56,7 @@ def rod_of(case: Case) -> Rod:
 
 def load_of(case: Case) -> Load:
     """The load of a case."""
-    return Load(case.p, case.zeta_perp, case.gamma)
+    return Load(case.p, case.zeta_perp, case.gamma, case.rotary_inertia)
 
 
 def waves_of(case: Case) -> tuple[Wave, ...]:
