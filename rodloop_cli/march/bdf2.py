@@ -13,7 +13,7 @@ from rodloop_cli.march.predictor import Past, predict
 from rodloop_cli.march.stages import Instant, Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
-from rodloop_cli.physics.equations import Fields, Motion
+from rodloop_cli.physics.equations import NODAL, Fields, Motion
 
 NEWTON_TARGET = 1e-10
 """Position error at which Newton stops: far below the scheme's own error, above round-off amplified by Δt⁻²."""
@@ -94,8 +94,13 @@ class FixedMarcher:
 
 def _motion(weights: tuple[float, float, float], size: float, state: State, before: State) -> Motion:
     a, b, c = weights
-    return Motion(
+    motion = Motion(
         np.array([[a / size]]),
         ((b * state.position + c * before.position) / size)[:, None],
         ((b * state.velocity + c * before.velocity) / size)[:, None],
     )
+    if not state.equations.load.rotary_inertia:
+        return motion
+    spin = (b * state.unknowns + c * before.unknowns)[None, :, NODAL:] / size
+    spin_rate = (b * state.rates + c * before.rates)[None, :, NODAL:] / size
+    return motion._replace(spin_past=spin, spin_rate_past=spin_rate)

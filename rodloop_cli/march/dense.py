@@ -18,7 +18,7 @@ class Shapes(NamedTuple):
     """The loop at k instants, at the Gauss points and, last, at the right end of each cell.
 
     times: (k,);  tangent: (2, k, n, m) at the Gauss points alone;  theta, moment: (k, n, m + 1);
-    position, velocity, force: (2, k, n, m + 1).
+    position, velocity, force: (2, k, n, m + 1);  spin: (k, n, m) θ_t at the Gauss points, empty without rotary inertia.
     """
 
     times: Array
@@ -28,6 +28,7 @@ class Shapes(NamedTuple):
     velocity: Array
     force: Array
     moment: Array
+    spin: Array
 
 
 def shapes_at(step: Step, times: Array) -> Shapes:
@@ -41,7 +42,8 @@ def shapes_at(step: Step, times: Array) -> Shapes:
     velocity += from_rates[:, 0, None, None] * step.start.velocity[:, None]
     force = np.einsum("ks,csnm->cknm", from_stages, step.fields.force)
     moment = np.tensordot(from_stages, step.fields.moment, 1)
-    return Shapes(times, tangent, _theta(unknowns), position, velocity, force, moment)
+    spin = _spin(step, from_rates) if step.start.equations.load.rotary_inertia else np.zeros(0)
+    return Shapes(times, tangent, _theta(unknowns), position, velocity, force, moment, spin)
 
 
 def _moved(step: Step, fractions: Array) -> Array:
@@ -51,6 +53,13 @@ def _moved(step: Step, fractions: Array) -> Array:
     moved: Array = (weights @ rates.reshape(len(rates), -1)).reshape(len(fractions), *rates.shape[1:])
     moved += step.start.unknowns
     return moved
+
+
+def _spin(step: Step, from_rates: Array) -> Array:
+    """(k, n, m): θ_t."""
+    spin: Array = np.tensordot(from_rates[:, 1:], step.rates[..., NODAL:], 1)
+    spin += from_rates[:, 0, None, None] * step.start.rates[:, NODAL:]
+    return spin
 
 
 def _theta(unknowns: Array) -> Array:

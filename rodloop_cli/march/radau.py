@@ -15,7 +15,7 @@ from rodloop_cli.march.stages import Instant, Linearisation, StageModes, solve_s
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.radau import RadauIIA, radau_iia
-from rodloop_cli.physics.equations import BoxEquations, Fields, Motion
+from rodloop_cli.physics.equations import NODAL, BoxEquations, Fields, Motion
 
 REUSE_BELOW = 0.05
 """A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
@@ -109,8 +109,11 @@ def _modes(stages: int) -> StageModes:
 
 def _motion(method: RadauIIA, state: State, size: float) -> Motion:
     rates = method.inverse / size
-    past = -rates.sum(axis=1)[None, :, None, None]
-    return Motion(rates, past * state.position[:, None], past * state.velocity[:, None])
+    past = -rates.sum(axis=1)[:, None, None]
+    motion = Motion(rates, past * state.position[:, None], past * state.velocity[:, None])
+    if not state.equations.load.rotary_inertia:
+        return motion
+    return motion._replace(spin_past=past * state.unknowns[:, NODAL:], spin_rate_past=past * state.rates[:, NODAL:])
 
 
 def started(state: State, size: float) -> tuple[State, Step]:

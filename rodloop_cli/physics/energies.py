@@ -39,6 +39,10 @@ class Quadrature:
         """∮ ρ v²/2 ds for velocity (2, …, n, m)."""
         return self.integral(0.5 * self._mesh.density[:, None] * (velocity**2).sum(axis=0))
 
+    def rotary(self, spin: Array, rotary_inertia: float) -> Array:
+        """∮ ρ ι θ_t²/2 ds for spin θ_t (…, n, m): the kinetic energy of the turning cross-sections."""
+        return self.integral(0.5 * rotary_inertia * self._mesh.density[:, None] * spin**2)
+
     def dissipation_rate(self, velocity: Array, tangent: Array, load: Load) -> Array:
         """ζ⊥ ∮ (v_n² + γ v_t²) ds, Eq. (16)."""
         if load.zeta_perp == 0:

@@ -41,12 +41,15 @@ class Load:
 class Motion(NamedTuple):
     """How velocity and acceleration follow from the unknowns at the stages: U = R X + u, W = R U + w.
 
-    rates: (k, k);  velocity_past: (2, k, n, m + 1) u;  acceleration_past: (2, k, n, m + 1) w.
+    rates: (k, k);  velocity_past: (2, k, n, m + 1) u;  acceleration_past: (2, k, n, m + 1) w;
+    spin_past, spin_rate_past: (k, n, m) the same for the angles, needed with rotary inertia alone.
     """
 
     rates: Array
     velocity_past: Array
     acceleration_past: Array
+    spin_past: Array | None = None
+    spin_rate_past: Array | None = None
 
 
 class Fields(NamedTuple):
@@ -91,6 +94,8 @@ class BoxEquations:
         force = self._from_node(unknowns, slice(FX, FY + 1), density * self._length)
         shear = force[0, ..., :-1] * sine
         shear -= force[1, ..., :-1] * cosine
+        if self.load.rotary_inertia and motion is not None:
+            shear += self._density * self.load.rotary_inertia * _spin_rate(unknowns[..., NODAL:], motion)
         shear *= self._length
         moment = unknowns[..., MOMENT, None] + shear @ self._integrate
         turning = (moment[..., :-1] * self._length_by_stiffness) @ self._integrate
@@ -225,6 +230,16 @@ class BoxEquations:
         out[:, FX : FY + 1] = force[..., -1].T
         out[:, MOMENT], out[:, THETA], out[:, NODAL:] = moment[:, -1], turning[:, -1], turning[:, :-1]
         return out
+
+
+def _spin_rate(theta: Array, motion: Motion) -> Array:
+    """θ_tt (k, n, m)."""
+    assert motion.spin_past is not None
+    assert motion.spin_rate_past is not None
+    flat = (len(motion.rates), -1)
+    spin = (motion.rates @ theta.reshape(flat)).reshape(theta.shape) + motion.spin_past
+    rate: Array = (motion.rates @ spin.reshape(flat)).reshape(theta.shape) + motion.spin_rate_past
+    return rate
 
 
 def _kinematics(position: Array, motion: Motion) -> tuple[Array, Array]:

@@ -27,6 +27,8 @@ class EnergyAccount:
         area = quadrature.area(shapes.position[INSIDE], shapes.tangent)
         bending = quadrature.bending(shapes.moment[INSIDE])
         kinetic = quadrature.kinetic(shapes.velocity[INSIDE])
+        if self._load.rotary_inertia:
+            kinetic = kinetic + quadrature.rotary(shapes.spin, self._load.rotary_inertia)
         surface = self._load.p * area
         fractions = np.clip((shapes.times - step.start.time) / step.size, 0.0, 1.0)
         dissipated = self._dissipated + self._taken(step, fractions, quadrature)

@@ -50,29 +50,32 @@ class CrossingWatch:
             self._safe = 0.0
             return None
         self._use(step.start.equations)
-        if self._safe and np.abs(step.fields.position - self._reference[:, None]).max() < self._safe:
-            return None
         before = 0.0
-        for node, shape in zip(step.nodes, self._watched(step.fields.position).swapaxes(0, 1), strict=True):
-            if crosses_itself(*shape):
-                return self._locate(step, before, float(node))
+        for stage, node in enumerate(step.nodes):
+            if self._may_have_crossed(step, stage):
+                if crosses_itself(*self._watched(step.fields.position[:, stage])):
+                    return self._locate(step, before, float(node))
+                self._keep(step, stage)
             before = float(node)
-        self._keep(step)
         return None
 
-    def _keep(self, step: Step) -> None:
-        """Remember the end of the step and how far its points can move without any crossing.
+    def _may_have_crossed(self, step: Step, stage: int) -> bool:
+        """Whether some point has moved too far since the shape was last found simple."""
+        return self._safe <= 0 or np.abs(step.fields.position[:, stage] - self._reference).max() >= self._safe
 
-        The clearance is that of a polygon through the points of the cells, whose sides lie inside the bends by κ
-        h²/8. Strands that are not opposed now may come to be in a bend that closes, whose size is 1/κ.
+    def _keep(self, step: Step, stage: int) -> None:
+        """Remember a simple shape and how far its points can move before it may cross.
+
+        The clearance is that of a polygon through the points of the cells, whose sides lie inside the bends by κ h²/8.
+        Strands that are not opposed now may come to be in a bend that closes, whose radius is 1/κ.
         """
-        position = self._reference = step.fields.position[:, -1]
+        position = self._reference = step.fields.position[:, stage]
         mesh = step.start.equations.mesh
-        sharpest = float(np.abs(step.fields.moment[-1] / mesh.stiffness[:, None]).max())
+        sharpest = float(np.abs(step.fields.moment[stage] / mesh.stiffness[:, None]).max())
         spacing = float(mesh.lengths.max()) / position.shape[-1] * 2
         clearance = crossing_indicator(*position.reshape(2, -1)) - sharpest * spacing**2 / 4
-        # Half, as both strands move; over √2, as components are compared.
-        self._safe = max(0.0, min(clearance, 1 / sharpest) / 2 / np.sqrt(2))
+        # Both strands of a clearance move; over √2, as components are compared.
+        self._safe = max(0.0, min(clearance / 2, 1 / sharpest)) / np.sqrt(2)
 
     def _locate(self, step: Step, before: float, after: float) -> float:
         def clearance(fraction: float) -> float:

@@ -1,0 +1,140 @@
+"""How lobes are lost: coalescence and collapse, Section 4.2 and Appendix C.
+
+Lobes (`lobes.find_lobes`) are followed from one stored shape to the next. A lobe that is gone for good was lost in
+one of two ways, whichever shows first at its place along the rod:
+
+- *collapse*: the curvature there turns negative, the convex lobe has become a concave indentation;
+- *coalescence*: the valley between it and a neighbour has vanished, the two have become one.
+
+While the deformation is small, modes merely add up, and lobes come and go as their sum does; only shapes that stray
+from the circle by `DEVELOPED` or more are followed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from rodloop_cli.physics.lobes import find_lobes
+
+Array = npt.NDArray[np.float64]
+
+DEVELOPED = 0.1
+"""Range of the radial displacement, over R, from which on the lobes of a shape can be seen."""
+
+VANISHED = 0.01
+"""Depth of a valley, as a share of the range of curvature, below which two lobes are one."""
+
+
+class Fate(Enum):
+    """How a lobe was lost."""
+
+    COALESCENCE = "coalescence"
+    COLLAPSE = "collapse"
+
+
+@dataclass(frozen=True)
+class LobeEvent:
+    """The loss of one lobe: when and where it was last seen, and what became of it."""
+
+    time: float
+    arclength: float
+    fate: Fate
+
+
+@dataclass(frozen=True)
+class _Lost:
+    """A lobe that is out of sight: where it was (index of a sample), how far it reached, and its fate once that
+    shows."""
+
+    time: float
+    place: int
+    reach: float
+    fate: Fate | None = None
+
+
+@dataclass
+class LobeWatch:
+    """Follows the lobes through shapes in order of time; ``seen``: samples at their tops in the latest one."""
+
+    _time: float = 0.0
+    _points: int = 1
+    _seen: list[int] = field(default_factory=list)
+    _lost: list[_Lost] = field(default_factory=list)
+
+    def watch(self, time: float, curvature: Array) -> None:
+        """Take the next shape; ``curvature`` [S] as for `find_lobes`."""
+        if radial_range(curvature) < DEVELOPED:
+            return
+        tops = [int(top) for top in find_lobes(curvature)]
+        self._points = len(curvature)
+        reach = self._points / (2 * max(len(tops), len(self._seen), 1))
+        missing, new = _unmatched(self._seen, tops, reach, self._points)
+        self._lost += [_Lost(self._time, place, reach) for place in missing]
+        self._regain(new)
+        self._lost = [lost if lost.fate else replace(lost, fate=_fate(curvature, lost.place, tops)) for lost in self._lost]
+        self._time, self._seen = time, tops
+
+    def events(self) -> Iterator[LobeEvent]:
+        """The losses so far, in order; one whose fate does not show yet stands in a valley, on its way to collapse."""
+        for lost in self._lost:
+            yield LobeEvent(lost.time, 2 * np.pi * lost.place / self._points, lost.fate or Fate.COLLAPSE)
+
+    def _regain(self, new: list[int]) -> None:
+        """A lobe that comes back to the place of a lost one was not lost: take the nearest off the list."""
+        for top in new:
+            near = [lost for lost in self._lost if _distance(top, lost.place, self._points) <= lost.reach]
+            if near:
+                self._lost.remove(min(near, key=lambda lost: _distance(top, lost.place, self._points)))
+
+
+def radial_range(curvature: Array) -> float:
+    """Range of the radial displacement w of the circle that has this curvature [S]: to first order κ - 1 = -w'' - w.
+
+    Waves of short length, large in the curvature and invisible in the shape, count little.
+    """
+    waves = np.fft.rfft(curvature)
+    n = np.arange(len(waves))
+    waves[:2], waves[2:] = 0, waves[2:] / (n[2:] ** 2 - 1)
+    return float(np.ptp(np.fft.irfft(waves, len(curvature))))
+
+
+def _unmatched(before: list[int], after: list[int], reach: float, points: int) -> tuple[list[int], list[int]]:
+    """The places before and after that belong to no pair, nearest pairs first, none further apart than ``reach``."""
+    pairs = sorted((_distance(a, b, points), a, b) for a in before for b in after)
+    missing, new = list(before), list(after)
+    for distance, a, b in pairs:
+        if distance <= reach and a in missing and b in new:
+            missing.remove(a)
+            new.remove(b)
+    return missing, new
+
+
+def _distance(a: int, b: int, points: int) -> int:
+    """In samples, the shorter way around the loop."""
+    return min((a - b) % points, (b - a) % points)
+
+
+def _fate(curvature: Array, place: int, tops: list[int]) -> Fate | None:
+    """What the curvature [S] shows at the place of a lobe that is not among ``tops`` any more; None: nothing yet."""
+    if curvature[place] <= 0:
+        return Fate.COLLAPSE
+    allowed = VANISHED * float(np.ptp(curvature))
+    joined = [_is_climb(_way(curvature, place, step, tops), allowed) for step in (1, -1)]
+    return Fate.COALESCENCE if any(joined) and not all(joined) else None
+
+
+def _way(curvature: Array, place: int, step: int, tops: list[int]) -> Array:
+    """The curvature from a place to the next lobe in one direction."""
+    points = len(curvature)
+    length = min((step * (top - place)) % points for top in tops) if tops else 0
+    return curvature[(place + step * np.arange(length + 1)) % points]
+
+
+def _is_climb(way: Array, allowed: float) -> bool:
+    """Whether there is no valley on the way up, but for ripples."""
+    return bool((np.maximum.accumulate(way) - way).max() <= allowed)
