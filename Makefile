@@ -83,8 +83,52 @@ clean: ## remove caches, builds and the quickstart's files (not .venv)
 	@rm -f $(OUT)/quickstart.nc $(OUT)/quickstart.png
 	@rmdir $(OUT) 2>/dev/null || true
 
-# -- benchmarks: bench, bench-quick ---------------------------------------------------------------------------------------
+# -- benchmarks -----------------------------------------------------------------------------------------------------------
+
+# The peers need packages of their own; they stay out of .venv.
+PEERS := .venv-peers
+
+$(PEERS)/.ready: pyproject.toml scripts/benchmarks/peers/requirements-peers.txt
+	@$(PYTHON) -m venv $(PEERS)
+	@echo "installing the peers in $(PEERS) ..."
+	@$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -e . \
+	    -r scripts/benchmarks/peers/requirements-peers.txt
+	@touch $@
+
+bench bench-quick bench-growth bench-tolerance: export OMP_NUM_THREADS := 1
+bench bench-quick bench-growth bench-tolerance: export OPENBLAS_NUM_THREADS := 1
+
+.PHONY: bench bench-quick bench-growth bench-tolerance
+bench: $(PEERS)/.ready ## error against wall time, rodloop and its peers; writes docs/performance.md
+	@$(PEERS)/bin/python -m scripts.benchmarks.bench --json $(OUT)/bench.json
+	@$(PEERS)/bin/python -m scripts.benchmarks.report $(OUT)/bench.json
+
+bench-quick: $(PEERS)/.ready ## the same with fewer settings and cases, under two minutes
+	@$(PEERS)/bin/python -m scripts.benchmarks.bench --quick --json $(OUT)/bench-quick.json
+
+bench-growth: $(RUN_READY) ## time and memory against cells, rows, time span, segments
+	@$(PY) -m scripts.benchmarks.growth
+
+bench-tolerance: $(RUN_READY) ## what the tolerance delivers, on reference and random cases
+	@$(PY) -m scripts.benchmarks.tolerance
 
 # -- figures and movies: figures, movies ----------------------------------------------------------------------------------
+
+figures movies reproduction: export OMP_NUM_THREADS := 1
+
+.PHONY: figures
+figures: $(RUN_READY) ## draw every figure of the paper from our own runs to out/paper (one: make figures/fig11)
+	@$(PY) -m scripts.paper
+
+figures/%: $(RUN_READY)
+	@$(PY) -m scripts.paper $*
+
+.PHONY: movies
+movies: $(RUN_READY) ## the paper's movies S1 to S3 to out/paper
+	@$(PY) -m scripts.paper movies
+
+.PHONY: reproduction
+reproduction: $(RUN_READY) ## the paper's numbers beside ours: docs/reproduction.md (a few minutes)
+	@$(PY) -m scripts.paper.reproduction
 
 # -- robustness: stress ---------------------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from rodloop_cli.case import rules
 from rodloop_cli.case.dump import dump
 from rodloop_cli.case.fault import Fault
+from rodloop_cli.case.scales import Scales
 
 #: Shorter segments than this are lost in the round-off of positions.
 SHORTEST = 1e-6
@@ -97,6 +98,12 @@ def _without_default(schema: dict[str, Any]) -> None:
     del schema["default"]
 
 
+def _without_null(schema: dict[str, Any]) -> None:
+    # None stands for a key that is left out; it may not be written.
+    schema.update(next(kind for kind in schema.pop("anyOf") if kind != {"type": "null"}))
+    del schema["default"]
+
+
 def _depends(default: Any, key: str, value: Any, *, shown: bool = True) -> Any:
     """A field whose default holds where ``key`` has ``value``; elsewhere it is None.
 
@@ -136,6 +143,8 @@ class Case(_Value):
     """Normal drag coefficient >= 0."""
     gamma: float = Field(default=0.5, ge=0, le=HUGE)
     """Drag anisotropy >= 0: tangential over normal drag coefficient."""
+    rotary_inertia: float = Field(default=0.0, ge=0, le=1)
+    """Rotary inertia I/(A R^2) >= 0 of a cross-section, Appendix A; a^2/(4 R^2) for a round rod of radius a."""
     perturbation: Annotated[tuple[Perturbation, ...], _FROM_LIST] = Field(default=(), max_length=100)
     """Radial perturbations of the unloaded equilibrium shape, added together."""
     t_end: float = Field(ge=1e-9, le=1e6)
@@ -158,6 +167,8 @@ class Case(_Value):
     """Number of stored times, uniform in [0, t_end], both ends included."""
     output_points: int = Field(default=rules.DEFAULT_POINTS, ge=8, le=100_000)
     """Number of stored arclength points."""
+    scales: Scales | None = Field(default=None, json_schema_extra=_without_null)
+    """Physical units for plots and the summary: R, B1 and rho_A1, each a text with its unit or a number in SI units."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -62,6 +62,7 @@ def simulated(run: Run, path: Path, *, force: bool, resume: bool) -> Summary:
     writer = RunWriter(
         path, s=recorder.s, segment=recorder.segment, attributes=run.attributes, force=force, resume=rows
     )
+    run.revisit(writer.stored())
     keeper = Keeper(writer, run)
     with writer, time_bar(run.case.t_end) as progress, signals_to(keeper):
         summary = run.into(writer, progress, keeper)

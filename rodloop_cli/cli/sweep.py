@@ -62,6 +62,8 @@ def sweep(
     Repeating the command runs only what is not done: after a kill, after failures, after a change of the grid.
     Keys of the base case can be set with --set, and those of GRID too, as in --set 'grid.p=[16, 32]'.
     """
+    if scheduler and executor != "dask":
+        raise click.UsageError("--scheduler goes with --executor dask.")
     from rodloop_cli.sweep.run import Sweep
 
     clock = time.perf_counter()

@@ -68,14 +68,19 @@ _AT_AREA = ("alpha", *_RODS)
 _NONE = "missing where there is none up to p_searched, or where it could not be computed"
 KINDS = ("none", "bifurcation", "fold", "not_computed")
 
+
+def _of_rod(name: str, long_name: str, **extras: Attribute) -> Variable:
+    return Variable(name, _RODS, long_name, extras=extras)
+
+
 CRITICAL_TABLE = (
     Variable("alpha", ("alpha",), "enclosed area over that of the unloaded loop"),
     Variable("stiffness_ratio", ("stiffness_ratio",), "stiffness ratio B2 / B1 of the segments"),
     Variable("k", ("k",), "fraction of the arclength in segment 1"),
     Variable("p_alpha", _AT_AREA, "pressure at which least bending energy has area alpha A0, times R^3 / B1"),
     Variable("p_limit", _AT_AREA, "limit of p_alpha for alpha to 1, times R^3 / B1"),
-    Variable("compressibility", _RODS, "relative loss of area per unit of pressure at zero pressure"),
-    Variable("p_stability", _RODS, "pressure of the first loss of stability, times R^3 / B1", extras={"comment": _NONE}),
+    _of_rod("compressibility", "relative loss of area per unit of pressure at zero pressure"),
+    _of_rod("p_stability", "pressure of the first loss of stability, times R^3 / B1", comment=_NONE),
     Variable(
         "stability_kind",
         _RODS,
@@ -83,14 +88,13 @@ CRITICAL_TABLE = (
         dtype="i1",
         extras={"flag_values": np.arange(4, dtype=np.int8), "flag_meanings": " ".join(KINDS)},
     ),
-    Variable(
+    _of_rod(
         "p_soft",
-        _RODS,
         "pressure at which the slowest motion has kept 1 percent of its squared frequency, times R^3 / B1",
-        extras={"comment": _NONE},
+        comment=_NONE,
     ),
-    Variable("p_contact", _RODS, "pressure of the first self-contact, times R^3 / B1", extras={"comment": _NONE}),
-    Variable("p_searched", _RODS, "pressure at which the search ended, times R^3 / B1"),
+    _of_rod("p_contact", "pressure of the first self-contact, times R^3 / B1", comment=_NONE),
+    _of_rod("p_searched", "pressure at which the search ended, times R^3 / B1"),
 )
 
 Columns = Mapping[str, npt.ArrayLike]

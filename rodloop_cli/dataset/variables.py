@@ -100,3 +100,6 @@ IN_A_ROW = (*PROFILES, *SCALARS, TIME)
 """What `append` expects of every stored time, and nothing else; the time last: it seals a row in the file."""
 
 TABLE = (ARCLENGTH, TIME, SEGMENT, *PROFILES, *SCALARS)
+
+LOBE_EVENT_TIMES, LOBE_EVENT_ARCLENGTHS, LOBE_EVENT_FATES = "lobe_event_times", "lobe_event_arclengths", "lobe_event_fates"
+"""Global attributes, one entry for each lobe that was lost: when and where it was last seen, coalescence or collapse."""

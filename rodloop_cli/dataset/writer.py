@@ -9,7 +9,7 @@ import contextlib
 import math
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 
@@ -88,6 +88,13 @@ class RunWriter:
     def rows(self) -> int:
         """Number of rows taken so far."""
         return self._written + self._block.count
+
+    def stored(self) -> Iterator[tuple[float, npt.NDArray[np.float64]]]:
+        """Time and curvature [S] of the rows that a continued run found here, those that cross left out."""
+        variables = self._open_dataset().variables
+        for i in range(self._written):
+            if not variables["crossing"][i]:
+                yield float(variables["t"][i]), np.asarray(variables["curvature"][i])
 
     def flush_if_due(self) -> None:
         """Bring rows to disk if they have waited long; costs nothing otherwise. For loops between rows."""

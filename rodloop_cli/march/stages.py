@@ -20,9 +20,20 @@ from rodloop_cli.physics.equations import NODAL, BoxEquations, Fields, Motion, X
 Complex = NDArray[np.complex128]
 
 SLOW = 0.3
-"""Contraction above which the linearisation is renewed once in the middle of an iteration."""
+"""Contraction above which the linearisation is renewed in the middle of an iteration."""
+
+MOST_RENEWALS = 2
+"""In one step. The first linearisation of a step has forces that are not its own; where they change at once (a load
+or a jump of the moment switched on), the second one is the first that is worth anything."""
+
+DIVERGING = 10.0
+"""Growth of the correction after which no linearisation helps."""
 
 MAX_ITERATIONS = 8
+
+ROUND_OFF = 1e-11
+STALLED = 0.5
+"""A correction that is smaller than ROUND_OFF and no longer contracts is round-off, which a shorter step amplifies."""
 
 CERTAIN = 0.05
 """A correction this much smaller than the target ends the iteration whatever the contraction."""
@@ -103,15 +114,14 @@ def solve_stages(
     iteration: those of a guess contain its accelerations, which amplify its error by Δt⁻².
     """
     unknowns, fields = guess, equations.fields(guess, motion)
-    renewed = linearisation is None
     linearisation = linearisation or renew(fields, False)
+    renewals = 0
     last, contraction = np.inf, 0.0
-    longest = float(equations.mesh.lengths.max())
     for iteration in range(1, MAX_ITERATIONS + 1):
         correction = linearisation.correction(equations.residual(unknowns, fields))
         unknowns = unknowns + correction
         fields = equations.fields(unknowns, motion)
-        size = position_size(correction, longest)
+        size = position_size(correction, equations.mesh.lengths)
         if not np.isfinite(size):
             break
         if size < CERTAIN * target:
@@ -120,19 +130,24 @@ def solve_stages(
             contraction = size / last
             if contraction < 1 and size * contraction / (1 - contraction) < target:
                 return Solution(unknowns, fields, iteration, contraction), linearisation
-            if SLOW < contraction < 2 and not renewed:
-                linearisation, renewed = renew(fields, True), True
-            elif contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration):
+            if contraction > STALLED and size < ROUND_OFF:
+                return Solution(unknowns, fields, iteration, contraction), linearisation
+            too_slow = contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration)
+            if (too_slow or contraction > SLOW) and contraction < DIVERGING and renewals < MOST_RENEWALS:
+                linearisation, renewals = renew(fields, True), renewals + 1
+            elif too_slow:
                 break
         last = size
     return None, linearisation
 
 
-def position_size(correction: Array, longest_cell: float) -> float:
-    """How far a correction (..., n, 6 + m) moves the rod: nodes directly, points inside a cell by its turning."""
+def position_size(correction: Array, lengths: Array) -> float:
+    """How far a correction (..., n, 6 + m) moves the rod: nodes directly, points inside a cell (n,) long by its
+    turning.
+    """
     nodes = correction[..., X : Y + 1]
-    angles = correction[..., NODAL:]
-    return max(float(np.abs(nodes).max()), float(np.abs(angles).max()) * longest_cell)
+    angles = np.abs(correction[..., NODAL:]).max(axis=-1)
+    return max(float(np.abs(nodes).max()), float((angles * lengths).max()))
 
 
 def _hopeless(size: float, contraction: float, target: float, left: int) -> bool:

@@ -23,7 +23,7 @@ from rodloop_cli.physics.lobes import find_lobes
 
 Array = npt.NDArray[np.float64]
 
-DEVELOPED = 0.1
+DEVELOPED = 0.2
 """Range of the radial displacement, over R, from which on the lobes of a shape can be seen."""
 
 VANISHED = 0.01
@@ -49,12 +49,17 @@ class LobeEvent:
 @dataclass(frozen=True)
 class _Lost:
     """A lobe that is out of sight: where it was (index of a sample), how far it reached, and its fate once that
-    shows."""
+    shows.
+    """
 
     time: float
     place: int
     reach: float
     fate: Fate | None = None
+
+    def judged(self, curvature: Array, tops: list[int]) -> _Lost:
+        """With the fate that a later shape shows, if it is not known already."""
+        return self if self.fate else replace(self, fate=_fate(curvature, self.place, tops))
 
 
 @dataclass
@@ -76,7 +81,7 @@ class LobeWatch:
         missing, new = _unmatched(self._seen, tops, reach, self._points)
         self._lost += [_Lost(self._time, place, reach) for place in missing]
         self._regain(new)
-        self._lost = [lost if lost.fate else replace(lost, fate=_fate(curvature, lost.place, tops)) for lost in self._lost]
+        self._lost = [lost.judged(curvature, tops) for lost in self._lost]
         self._time, self._seen = time, tops
 
     def events(self) -> Iterator[LobeEvent]:

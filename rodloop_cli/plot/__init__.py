@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from rodloop_cli.plot.figures import overview as overview
     from rodloop_cli.plot.file import plot_file as plot_file
     from rodloop_cli.plot.kymograph import draw_kymograph as draw_kymograph
+    from rodloop_cli.plot.lobes import draw_lobes as draw_lobes
+    from rodloop_cli.plot.lobes import lobe_events as lobe_events
+    from rodloop_cli.plot.lobes import mark_curvature as mark_curvature
+    from rodloop_cli.plot.lobes import mark_lobe_events as mark_lobe_events
     from rodloop_cli.plot.look import style as style
     from rodloop_cli.plot.moving import movie as movie
     from rodloop_cli.plot.profiles import draw_curvature as draw_curvature
@@ -28,6 +32,7 @@ if TYPE_CHECKING:
     from rodloop_cli.plot.profiles import draw_profile as draw_profile
     from rodloop_cli.plot.shapes import draw_shape as draw_shape
     from rodloop_cli.plot.shapes import draw_shapes as draw_shapes
+    from rodloop_cli.plot.speed import draw_speeds as draw_speeds
 
 _HOMES = {
     "draw_curvature": "profiles",
@@ -36,10 +41,15 @@ _HOMES = {
     "draw_energies": "energies",
     "draw_forces": "profiles",
     "draw_kymograph": "kymograph",
+    "draw_lobes": "lobes",
     "draw_profile": "profiles",
     "draw_residual": "energies",
     "draw_shape": "shapes",
     "draw_shapes": "shapes",
+    "draw_speeds": "speed",
+    "lobe_events": "lobes",
+    "mark_curvature": "lobes",
+    "mark_lobe_events": "lobes",
     "movie": "moving",
     "overview": "figures",
     "plot_file": "file",

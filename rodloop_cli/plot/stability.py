@@ -15,16 +15,21 @@ from matplotlib.ticker import MaxNLocator
 from rodloop_cli.case.wording import one_line
 from rodloop_cli.errors import OutputError
 from rodloop_cli.plot.options import Options
+from rodloop_cli.plot.sweep_axes import hatch
 
 Array = npt.NDArray[np.float64]
 
 PRESSURE = r"pressure $\,\tilde p = p R^3/B_1$"
+RATIO = r"stiffness ratio $\,B_2/B_1$"
 SHAPES = 8
 """Mode shapes in a figure."""
 SWING = 0.25
 """Largest displacement of a drawn mode, in R."""
 LETTER = 0.035
 """Height of a number, in the range of the axes."""
+WIDE = 4.0
+"""Ratios that span more than this are drawn on a logarithmic axis."""
+RATIO_TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 OUTLINE, MODE, MIRROR = "#9a9a9a", "#1f6fb4", "#e8820c"
 
 
@@ -170,7 +175,7 @@ def draw_critical(ax: Axes, dataset: xr.Dataset) -> None:
     if (np.abs(dataset["k"].to_numpy() - 0.5) < 1e-9).any():
         fine = np.linspace(ratio.min(), ratio.max(), 400)
         ax.plot(fine, fit_19(fine), color="#222222", lw=0.9, ls="--", label="Eq. (19)")
-    ax.set(xlabel=r"stiffness ratio $B_2/B_1$", ylabel=r"$p(\alpha)\,R^3/B_1$", ylim=(0, None))
+    ax.set(xlabel=RATIO, ylabel=r"$p(\alpha)\,R^3/B_1$", xlim=(ratio.min(), ratio.max()), ylim=(0, None))
     words = "" if dataset.sizes["alpha"] > 1 else rf", $\alpha$ = {float(dataset['alpha'][0]):g}"
     ax.set_title(f"least bending energy at a given area{words}")
     ax.legend()
@@ -180,35 +185,59 @@ def draw_thresholds(ax: Axes, dataset: xr.Dataset) -> None:
     """Where the equilibria from p = 0 lose stability, over the stiffness ratio; nothing where they do not."""
     ratio, fractions = _numbers(dataset, "stiffness_ratio"), _numbers(dataset, "k")
     colours = mpl.colormaps["viridis"](np.linspace(0, 0.9, len(fractions)))
+    lost = _lost_before_contact(dataset)
+    contact = dataset["p_contact"].where(lost.isnull())
     for i, colour in enumerate(colours):
-        ax.plot(ratio, dataset["p_stability"].isel(k=i), "o-", ms=3, color=colour, label=f"$k$ = {fractions[i]:g}")
-        contact = dataset["p_contact"].isel(k=i).where(dataset["p_stability"].isel(k=i).isnull())
-        ax.plot(ratio, contact, "x", ms=4, color=colour)
-    ax.plot([], [], "x", color="#777777", label="no loss: self-contact")
-    ax.set(xlabel=r"stiffness ratio $B_2/B_1$", ylabel=PRESSURE, xlim=(ratio.min(), ratio.max()), ylim=(0, None))
+        ax.plot(ratio, lost.isel(k=i), "o-", ms=3, lw=1.0, color=colour, label=f"$k$ = {fractions[i]:g}")
+        ax.plot(ratio, contact.isel(k=i), "x", ms=4, color=colour)
+    ax.plot([], [], "x", color="#777777", label="self-contact before any loss")
+    ax.set(xlabel=RATIO, ylabel=PRESSURE, xlim=(ratio.min(), ratio.max()), ylim=(0, None))
     ax.set_title("loss of stability")
     ax.legend()
 
 
 def draw_stability_map(ax: Axes, dataset: xr.Dataset) -> None:
-    """Pressure of the loss of stability over ratio and k, in units of the softer segment; hatched where there is none."""
+    """Pressure of the loss of stability over ratio and k, in units of the softer segment; hatched where there is none.
+    Pressure of the loss of stability over ratio and k, in units of the softer segment; hatched where there is none.
+    """
     ratio, k = _numbers(dataset, "stiffness_ratio"), _numbers(dataset, "k")
-    threshold = dataset["p_stability"].transpose("k", "stiffness_ratio").to_numpy()
+    threshold = _lost_before_contact(dataset).transpose("k", "stiffness_ratio").to_numpy()
     softer = np.minimum(1.0, ratio)
     values = np.ma.masked_invalid(threshold / softer)
-    drawn = ax.pcolormesh(ratio, k, values, shading="nearest", cmap="viridis", rasterized=True)
-    stable = np.where(np.ma.getmaskarray(values), 1.0, np.nan)
-    ax.pcolor(ratio, k, stable, shading="nearest", hatch="////", alpha=0.0, edgecolor="#b0b0b0", lw=0)
-    if ratio.max() / ratio.min() > 4:
-        ax.set_xscale("log")
-        ticks = [t for t in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0) if ratio.min() <= t <= ratio.max()]
-        ax.set_xticks(ticks, [f"{t:g}" for t in ticks])
-        ax.minorticks_off()
+    scale = "log" if ratio.max() / ratio.min() > WIDE else "linear"
+    edges = _edges(ratio, scale), _edges(k, "linear")
+    drawn = ax.pcolormesh(*edges, values, cmap="viridis", rasterized=True)
+    hatch(ax, edges, np.ma.getmaskarray(values))
+    ax.grid(visible=False)
+    _scale_ratios(ax, ratio, scale)
     figure = ax.get_figure(root=True)
     assert figure is not None
     figure.colorbar(drawn, ax=ax, label=r"$p_{\mathrm{stability}}\,R^3/\min(B_1, B_2)$")
-    ax.set(xlabel=r"stiffness ratio $B_2/B_1$", ylabel="fraction $k$ of segment 1")
+    ax.set(xlabel=RATIO, ylabel="fraction $k$ of segment 1")
     ax.set_title("loss of stability; hatched: none before the loop touches itself")
+
+
+def _lost_before_contact(dataset: xr.Dataset) -> xr.DataArray:
+    """Pressure of the loss of stability where the loop does not touch itself before; else NaN."""
+    lost, contact = dataset["p_stability"], dataset["p_contact"]
+    return lost.where(contact.isnull() | (np.abs(contact) > np.abs(lost)))
+
+
+def _edges(points: Array, scale: str) -> Array:
+    """(n + 1,): half-way between points, in the logarithm on a logarithmic axis."""
+    if scale == "log":
+        edges: Array = np.exp(_edges(np.log(points), "linear"))
+        return edges
+    middle = (points[:-1] + points[1:]) / 2
+    return np.concatenate([[2 * points[0] - middle[0]], middle, [2 * points[-1] - middle[-1]]])
+
+
+def _scale_ratios(ax: Axes, ratio: Array, scale: str) -> None:
+    ax.set_xscale(scale)
+    if scale == "log":
+        ticks = [t for t in RATIO_TICKS if ratio.min() <= t <= ratio.max()]
+        ax.set_xticks(ticks, [f"{t:g}" for t in ticks])
+        ax.minorticks_off()
 
 
 def fit_19(ratio: Array) -> Array:

@@ -3,7 +3,11 @@
 import time
 from dataclasses import asdict, dataclass, field
 
+import numpy as np
+
+from rodloop_cli.dataset.variables import LOBE_EVENT_ARCLENGTHS, LOBE_EVENT_FATES, LOBE_EVENT_TIMES, Attribute
 from rodloop_cli.march.work import Work
+from rodloop_cli.physics.lobe_events import LobeWatch
 from rodloop_cli.simulation.events import AreaExtrema
 
 
@@ -13,6 +17,7 @@ class Summary:
 
     work: Work
     extrema: AreaExtrema = field(default_factory=AreaExtrema)
+    lobes: LobeWatch = field(default_factory=LobeWatch)
     outcome: str = ""
     first_crossing: float | None = None
     cells: int = 0
@@ -43,3 +48,15 @@ class Summary:
         if self.extrema.period is not None:
             found["period"] = self.extrema.period
         return found
+
+    @property
+    def lobe_events(self) -> dict[str, Attribute]:
+        """The lobes that were lost, for the file; nothing if there are none."""
+        events = sorted(self.lobes.events(), key=lambda event: event.time)
+        if not events:
+            return {}
+        return {
+            LOBE_EVENT_TIMES: np.array([event.time for event in events]),
+            LOBE_EVENT_ARCLENGTHS: np.array([event.arclength for event in events]),
+            LOBE_EVENT_FATES: " ".join(event.fate.value for event in events),
+        }

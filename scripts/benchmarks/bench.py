@@ -2,8 +2,9 @@
 
     python -m scripts.benchmarks.bench [--quick] [--json results.json]
 
-Every setting is run once a round, one solver after the other, and the median over the rounds is kept: when the speed of the machine
-drifts, it drifts for all. Settings are fixed beforehand, in `ours` and in the modules of `peers`. Single-threaded.
+Every setting is run once a round, one solver after the other, and the median over the rounds is kept: when the speed
+of the machine drifts, it drifts for all. Settings are fixed beforehand, in `ours` and in the modules of `peers`.
+Single-threaded.
 """
 
 import argparse
@@ -11,6 +12,7 @@ import json
 import platform
 import statistics
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +54,9 @@ def main() -> None:
 def race(case: str, *, quick: bool) -> list[Row]:
     """All solvers on one case."""
     entries = list(entrants(case, quick=quick))
-    rows = [{"peer": peer.name, "case": case, "settings": settings, "walls": []} for peer, settings in entries]
+    rows: list[Row] = [
+        {"peer": peer.name, "case": case, "settings": settings, "walls": []} for peer, settings in entries
+    ]
     for _ in range(ROUNDS):
         for (peer, settings), row in zip(entries, rows, strict=True):
             if not row["walls"] or (row["error"] is not None and row["walls"][0] < LONG):
@@ -61,7 +65,8 @@ def race(case: str, *, quick: bool) -> list[Row]:
         # The first round compiles and fills caches.
         walls = row["walls"][1:] or row["walls"]
         row["wall"] = statistics.median(walls) if walls else None
-        print(f"{row['peer']:32s} {case:4s} {row['settings']} {row['wall']} s, error {row['error']}, {row['notes']}", flush=True)
+        words = f"{row['wall']} s, error {row['error']}, {row['notes']}"
+        print(f"{row['peer']:32s} {case:4s} {row['settings']} {words}", flush=True)
     return rows
 
 
@@ -77,8 +82,6 @@ def entrants(case: str, *, quick: bool) -> Iterator[tuple[Peer, Row]]:
 
 def available(modules: tuple[str, ...]) -> Iterator[Peer]:
     """The peers whose packages are installed."""
-    from importlib import import_module
-
     for module in modules:
         try:
             loaded = import_module(f"scripts.benchmarks.peers.{module}")

@@ -1,6 +1,7 @@
 """rodloop itself behind the interface of the peers, so that one driver times all of them alike.
 
-Timed: the initial shape (the unloaded equilibrium included), the march and the observables at the stated times; not imports.
+Timed: the initial shape (the unloaded equilibrium included), the march and the observables at the stated times; not
+imports.
 """
 
 import time

@@ -1,7 +1,8 @@
 """Equilibria of the loop on the same boxes as its motion.
 
-The energy is minimised by implicit steps of a gradient flow: every step solves the statics with an inertia μ(X - X_before) added, which
-also holds the rigid motions in place. As the steps contract, μ goes down and the flow turns into Newton's method.
+The energy is minimised by implicit steps of a gradient flow: every step solves the statics with an inertia μ(X -
+X_before) added, which also holds the rigid motions in place. As the steps contract, μ goes down and the flow turns into
+Newton's method.
 """
 
 import numpy as np
@@ -55,7 +56,9 @@ def _held_correction(equations: BoxEquations, unknowns: Array, position: Array, 
 
 
 def unloaded(mesh: Mesh, rule: GaussRule) -> Array:
-    """(n, 6 + m): the loop of least bending energy, its centre at the origin, turned by 0 on average against the circle."""
+    """(n, 6 + m): the loop of least bending energy, its centre at the origin, turned by 0 on average against the
+    circle.
+    """
     equations = BoxEquations(mesh, rule, Load(p=0.0))
     unknowns = relax(equations, laid_on(circle(), mesh, rule))
     closure = Closure(equations)
