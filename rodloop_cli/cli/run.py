@@ -45,6 +45,8 @@ def run(
 
     keep_freed_memory()
     prepared = Run.of(case)
+    if prepared.warning:
+        click.echo(f"warning: {prepared.warning}", err=True)
     summary = simulated(prepared, path, force=force, resume=resume)
     if not current_settings().quiet:
         click.echo("\n".join(told(summary)), err=True)

@@ -173,11 +173,15 @@ class RunWriter:
 
     def _reopen(self, rows: int, attributes: Mapping[str, Attribute]) -> netCDF4.Dataset:
         """The .part of a killed run, to go on after `rows` rows; later ones are the same and written once more."""
+        dataset = None
         try:
             dataset = netCDF4.Dataset(self.part, "a")
             times = np.asarray(dataset.variables["t"][:rows])
             same = dataset.getncattr("case_sha256") == attributes["case_sha256"]
         except (OSError, RuntimeError, LookupError, AttributeError):
+            if dataset is not None:  # HDF5 would keep its lock on it
+                with contextlib.suppress(OSError, RuntimeError):
+                    dataset.close()
             raise OutputError(f"{self.part} cannot be continued; run again without --resume") from None
         if not same or len(times) < rows:
             dataset.close()

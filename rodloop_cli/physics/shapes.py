@@ -4,6 +4,9 @@ A base shape displaced along its outward normal by δ(s) turns its tangent by -a
 hypot(1 + κδ, δ'). The stretch is taken out by a new arclength, so that the perturbed shape is a state of the
 inextensible rod: a perturbation that keeps the parameter would be thrown back by the constraint in the first time
 step, with velocities ε/Δt.
+
+In the turning, κ is 1, its mean: exact for the circle. Where the curvature of the base jumps at a stiffness junction,
+the tangent of the displaced curve would jump too, by O(ε²), and a kink is no state of an elastic rod.
 """
 
 from collections.abc import Callable
@@ -87,7 +90,7 @@ def perturbed(base: Shape, waves: tuple[Wave, ...], rod: Rod) -> Shape:
     def turned(s: Array) -> Array:
         old = arclength.old(s)
         delta, delta_slope = displacement(waves, old), slope(waves, old)
-        return base.theta(old) - np.arctan2(delta_slope, 1 + base.curvature(old) * delta)
+        return base.theta(old) - np.arctan2(delta_slope, 1 + delta)
 
     def curvature(s: Array) -> Array:
         inside = np.clip(s, DIFFERENCE, LENGTH - DIFFERENCE)

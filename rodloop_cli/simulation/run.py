@@ -32,6 +32,12 @@ REST = 1e-6
 """Distance from an equilibrium at which a run of fixed steps has settled."""
 
 
+JUMPING_MOMENT = (
+    "the perturbation makes the bending moment jump at the stiffness junctions at t = 0: bending waves of every length "
+    "start there, and positions are good to some 1e-2 of the amplitude rather than to tol"
+)
+
+
 class BetweenSteps(Protocol):
     """Whoever wants to do something between two steps: write a checkpoint, end the run."""
 
@@ -67,7 +73,13 @@ class Run:
         """What is known of the result beforehand."""
         case = self.case
         text, key = case.to_yaml(), case.sha256
-        return run_attributes(title=case.title, case_text=text, case_sha256=key, command="rodloop run")
+        known = run_attributes(title=case.title, case_text=text, case_sha256=key, command="rodloop run")
+        return known | ({"warning": self.warning} if self.warning else {})
+
+    @property
+    def warning(self) -> str:
+        """What keeps this run from meeting its tolerance, as far as that is known beforehand; empty if nothing."""
+        return JUMPING_MOMENT if self.case.perturbation and self.begun.rod.has_stiffness_contrast else ""
 
     def into(self, sink: RowSink, progress: Progress | None = None, between: BetweenSteps | None = None) -> Summary:
         """Run to the end, or to the event that stops it, and close the sink with the outcome.

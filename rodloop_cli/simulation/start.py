@@ -19,6 +19,9 @@ from rodloop_cli.statics import as_shape, laid_on, unloaded
 STARTING_TIME = 1e-4
 """Length of the backward Euler step that gives the forces at t = 0+, in units of the fastest time of the motion."""
 
+LEAST_SCALE = 1e-3
+"""Size of the motion of a loop that is neither disturbed nor pushed out of shape, to which its tolerance refers."""
+
 LEAST_CELLS = 4
 MOST_START_CELLS = 2048
 
@@ -52,7 +55,8 @@ def start(case: Case) -> Start:
     state, step = started(state, STARTING_TIME * fastest_time(load, rod))
     amplitude = float(np.abs(displacement(waves, np.linspace(0, 2 * np.pi, 1024))).max())
     push = float(np.abs(state.acceleration).max()) * growth_time(load, rod) ** 2
-    return Start(rod, load, state, step, Departure(min(1.0, max(amplitude, push))))
+    scale = max(amplitude or LEAST_SCALE, push)
+    return Start(rod, load, state, step, Departure(min(1.0, scale)))
 
 
 def rod_of(case: Case) -> Rod:

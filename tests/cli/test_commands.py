@@ -180,7 +180,7 @@ def test_the_schema_gives_the_defaults_and_no_null():
     keys = schema()["properties"]
     assert (keys["tol"]["default"], keys["k"]["default"], keys["stop_at"]["default"]) == (1e-4, 0.5, ["crossing"])
     without_default = {key for key, entry in keys.items() if "default" not in entry}
-    assert without_default == {"p", "t_end", "N", "dt", "segments", "snapshot_times"}
+    assert without_default == {"p", "t_end", "N", "dt", "segments", "snapshot_times", "scales"}
     assert "null" not in json.dumps(keys)
 
 

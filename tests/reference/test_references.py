@@ -21,8 +21,8 @@ LATE_DISTANCE = 2e-3
 """A homogeneous loop that is nearly round again (t > 9) shows the instability's growth of errors made before t = 3."""
 
 MOMENT_WITH_CONTRAST = 1e-2
-"""Waves of every length leave a stiffness junction at t = 0+, and the moment at a point shows them all: the reference is
-not to be trusted further than this."""
+"""Waves of every length leave a stiffness junction at t = 0+, and the moment at a point shows them all: the reference
+is not to be trusted further than this."""
 
 
 @dataclass(frozen=True)
