@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from rodloop_cli.plot.lobes import mark_lobe_events as mark_lobe_events
     from rodloop_cli.plot.look import style as style
     from rodloop_cli.plot.moving import movie as movie
+    from rodloop_cli.plot.physical import millinewtons as millinewtons
+    from rodloop_cli.plot.physical import milliseconds as milliseconds
     from rodloop_cli.plot.profiles import draw_curvature as draw_curvature
     from rodloop_cli.plot.profiles import draw_forces as draw_forces
     from rodloop_cli.plot.profiles import draw_profile as draw_profile
@@ -50,6 +52,8 @@ _HOMES = {
     "lobe_events": "lobes",
     "mark_curvature": "lobes",
     "mark_lobe_events": "lobes",
+    "millinewtons": "physical",
+    "milliseconds": "physical",
     "movie": "moving",
     "overview": "figures",
     "plot_file": "file",

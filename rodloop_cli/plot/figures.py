@@ -12,6 +12,7 @@ from rodloop_cli.plot.frames import last_sound, nearest, spread
 from rodloop_cli.plot.heading import head
 from rodloop_cli.plot.kymograph import draw_kymograph
 from rodloop_cli.plot.options import Options
+from rodloop_cli.plot.physical import milliseconds
 from rodloop_cli.plot.profiles import draw_curvature, draw_forces
 from rodloop_cli.plot.shapes import SHAPES_SHOWN, common_limits, draw_shape, draw_shapes, time_label
 
@@ -28,6 +29,8 @@ def overview(dataset: xr.Dataset, options: Options) -> Figure:
     draw_shapes(axes["S"], dataset, frames)
     draw_energies(axes["E"], dataset)
     draw_displacement(axes["D"], dataset)
+    milliseconds(axes["E"], dataset)
+    milliseconds(axes["D"], dataset)
     draw_forces(axes["A"], dataset, "axial", last)
     draw_forces(axes["N"], dataset, "shear", last)
     head(figure, dataset)
@@ -54,6 +57,7 @@ def energies(dataset: xr.Dataset, options: Options) -> Figure:
     draw_energies(upper, dataset)
     upper.set_xlabel("")
     draw_residual(lower, dataset)
+    milliseconds(lower, dataset)
     head(figure, dataset)
     return figure
 
@@ -89,7 +93,9 @@ def kymograph(dataset: xr.Dataset, options: Options) -> Figure:
 def displacement(dataset: xr.Dataset, options: Options) -> Figure:
     """How the midpoints of the segments swing."""
     figure = new_figure((7.5, 4.4), options)
-    draw_displacement(figure.subplots(), dataset)
+    ax = figure.subplots()
+    draw_displacement(ax, dataset)
+    milliseconds(ax, dataset)
     head(figure, dataset)
     return figure
 
@@ -101,6 +107,7 @@ def dissipation(dataset: xr.Dataset, options: Options) -> Figure:
     draw_dissipation(upper, dataset)
     upper.set_xlabel("")
     draw_energies(lower, dataset)
+    milliseconds(lower, dataset)
     head(figure, dataset)
     return figure
 

@@ -19,6 +19,7 @@ from rodloop_cli.plot.axes import (
 from rodloop_cli.plot.data import closed_arclength, closed_profile
 from rodloop_cli.plot.frames import last_sound, sound
 from rodloop_cli.plot.look import AFTER_CROSSING, DASHES
+from rodloop_cli.plot.physical import millinewtons
 from rodloop_cli.plot.segments import pieces
 from rodloop_cli.plot.shapes import time_label
 
@@ -31,6 +32,7 @@ def draw_forces(
 ) -> None:
     """Axial force (tension positive) or shear force (along the inward normal); default: the last physical frame."""
     draw_profile(ax, dataset, f"{component}_force", frames)
+    millinewtons(ax, dataset)
     ax.axhline(0, color="#777777", lw=0.7, zorder=1)
 
 
