@@ -131,4 +131,20 @@ movies: $(RUN_READY) ## the paper's movies S1 to S3 to out/paper
 reproduction: $(RUN_READY) ## the paper's numbers beside ours: docs/reproduction.md (a few minutes)
 	@$(PY) -m scripts.paper.reproduction
 
-# -- robustness: stress ---------------------------------------------------------------------------------------------------
+# -- robustness: stress, cf-check -----------------------------------------------------------------------------------------
+
+stress: export OMP_NUM_THREADS := 1
+stress: export OPENBLAS_NUM_THREADS := 1
+
+.PHONY: stress
+stress: $(DEV_READY) ## random cases, maps over the parameters, long runs, strikes (ARGS=--quick: a minute)
+	@$(PY) -m scripts.stress all $(ARGS)
+	@$(PY) -m pytest -q -m slow tests/faults -s
+
+.venv-cf/bin/compliance-checker:
+	@$(PYTHON) -m venv .venv-cf
+	@.venv-cf/bin/python -m pip install --quiet --disable-pip-version-check compliance-checker setuptools
+
+.PHONY: cf-check
+cf-check: $(DEV_READY) | .venv-cf/bin/compliance-checker ## CF compliance of run, sweep and modes files
+	@$(PY) scripts/cf_check.py $(CURDIR)/.venv-cf/bin/compliance-checker

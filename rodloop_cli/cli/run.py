@@ -14,6 +14,12 @@ from rodloop_cli.cli.settings import current_settings
 if TYPE_CHECKING:
     from rodloop_cli.simulation import Run, Summary
 
+LARGE_SHARE = 0.05
+"""Of the energy that changes hands: a residual beyond this deserves a warning."""
+
+ROUND_OFF = 1e-6
+"""A smaller energy residual is that of rounded numbers, whatever its share."""
+
 
 @click.command()
 @case_file
@@ -83,6 +89,8 @@ def told(summary: Summary) -> list[str]:
         lines.append(f"period {summary.extrema.period:.6g} (between minima of the area)")
     share = summary.energy_residual / summary.energy_change if summary.energy_change else 0.0
     lines.append(f"energy residual {summary.energy_residual:.1e}, {share:.1e} of the largest change")
+    if share > LARGE_SHARE and summary.energy_residual > ROUND_OFF:
+        lines.append("warning: much of the energy is lost to the steps; try a tighter tol (bdf2: a smaller dt, more N)")
     lines.append(
         f"{work.steps} steps ({work.rejected} rejected, {work.newton_failures} failed), {summary.cells} cells, "
         f"{summary.seconds:.2f} s"

@@ -101,5 +101,7 @@ IN_A_ROW = (*PROFILES, *SCALARS, TIME)
 
 TABLE = (ARCLENGTH, TIME, SEGMENT, *PROFILES, *SCALARS)
 
-LOBE_EVENT_TIMES, LOBE_EVENT_ARCLENGTHS, LOBE_EVENT_FATES = "lobe_event_times", "lobe_event_arclengths", "lobe_event_fates"
-"""Global attributes, one entry for each lobe that was lost: when and where it was last seen, coalescence or collapse."""
+LOBE_EVENT_TIMES = "lobe_event_times"
+LOBE_EVENT_ARCLENGTHS = "lobe_event_arclengths"
+LOBE_EVENT_FATES = "lobe_event_fates"
+"""Global attributes with an entry for each lobe that was lost: when and where it was last seen, and its fate."""

@@ -83,7 +83,8 @@ class Marcher:
 
         Raises ConvergenceError, with the time and what to try, when steps become too short.
         """
-        while self.state.time < self.plan.t_end:
+        # The sum of the steps may miss the end by a unit in the last place.
+        while self.plan.t_end - self.state.time > SMALLEST_STEP * self.plan.t_end:
             step = self._attempt()
             if step is not None:
                 yield step

@@ -128,9 +128,7 @@ def solve_stages(
             return Solution(unknowns, fields, iteration, contraction), linearisation
         if iteration > 1:
             contraction = size / last
-            if contraction < 1 and size * contraction / (1 - contraction) < target:
-                return Solution(unknowns, fields, iteration, contraction), linearisation
-            if contraction > STALLED and size < ROUND_OFF:
+            if _converged(size, contraction, target):
                 return Solution(unknowns, fields, iteration, contraction), linearisation
             too_slow = contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration)
             if (too_slow or contraction > SLOW) and contraction < DIVERGING and renewals < MOST_RENEWALS:
@@ -148,6 +146,12 @@ def position_size(correction: Array, lengths: Array) -> float:
     nodes = correction[..., X : Y + 1]
     angles = np.abs(correction[..., NODAL:]).max(axis=-1)
     return max(float(np.abs(nodes).max()), float((angles * lengths).max()))
+
+
+def _converged(size: float, contraction: float, target: float) -> bool:
+    if contraction > STALLED and size < ROUND_OFF:
+        return True
+    return contraction < 1 and size * contraction / (1 - contraction) < target
 
 
 def _hopeless(size: float, contraction: float, target: float, left: int) -> bool:

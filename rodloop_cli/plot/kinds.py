@@ -73,7 +73,9 @@ CONTENTS: Mapping[str, Content] = {
     "critical": Content(
         "rodloop_cli.dataset.stability_files:open_table",
         {
-            "overview": Kind("rodloop_cli.plot.stability:critical_curves", "critical pressures over the stiffness ratio"),
+            "overview": Kind(
+                "rodloop_cli.plot.stability:critical_curves", "critical pressures over the stiffness ratio"
+            ),
             "maps": Kind("rodloop_cli.plot.stability:critical_map", "which loops lose stability"),
         },
     ),

@@ -38,7 +38,9 @@ class EnergyAccount:
             "surface_energy": surface,
             "kinetic_energy": kinetic,
             "dissipated_energy": dissipated,
-            "energy_residual": self._residual(bending + surface + kinetic + dissipated, surface),
+            "energy_residual": self._residual(
+                bending + surface + kinetic + dissipated, surface, np.maximum(kinetic, dissipated)
+            ),
             "dissipation_rate": rate,
             "area": area,
         }
@@ -57,12 +59,13 @@ class EnergyAccount:
         self._dissipated, total, surface, self.largest_residual, self.largest_change = map(float, memory)
         self._first = total, surface
 
-    def _residual(self, total: Array, surface: Array) -> Array:
+    def _residual(self, total: Array, surface: Array, gained: Array) -> Array:
         if self._first is None:
             self._first = float(total[0]), float(surface[0])
         residual = total - self._first[0]
         self.largest_residual = max(self.largest_residual, float(np.abs(residual).max()))
-        self.largest_change = max(self.largest_change, float(np.abs(surface - self._first[1]).max()))
+        change = np.maximum(np.abs(surface - self._first[1]), gained)
+        self.largest_change = max(self.largest_change, float(change.max()))
         return residual
 
     def _taken(self, step: Step, fractions: Array, quadrature: Quadrature) -> Array:

@@ -80,7 +80,7 @@ class CrossingWatch:
         if position[0].size <= MOST_POINTS:
             polygon, spacing = position.reshape(2, -1), float(mesh.lengths.max()) / position.shape[-1] * 2
         else:
-            polygon, spacing = np.stack(self._located(position)), LENGTH / LOCATED_POINTS
+            polygon, spacing = self._located(position), LENGTH / LOCATED_POINTS
         clearance = crossing_indicator(*polygon) - sharpest * spacing**2 / 4
         # Both strands of a clearance move; over √2, as components are compared.
         self._safe = max(0.0, min(clearance / 2, 1 / sharpest)) / np.sqrt(2)

@@ -25,7 +25,7 @@ from scripts.benchmarks.peers.interface import Peer
 from scripts.references.observables import DATA, read_reference, shape_error
 from scripts.references.problem import PROBLEMS
 
-ROUNDS = 5
+ROUNDS = 4
 LONG = 3.0
 """Seconds: what takes longer is run once."""
 

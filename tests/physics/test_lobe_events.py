@@ -79,3 +79,11 @@ def test_a_soft_half_loses_its_middle_lobe_by_collapse():
     run = simulate(Case(p=32, stiffness_ratio=5, t_end=0.315))
     places = dict(zip(run.attrs["lobe_event_fates"].split(), run.attrs["lobe_event_arclengths"], strict=True))
     assert places["collapse"] == pytest.approx(np.pi / 2, abs=0.05)
+
+
+def test_a_low_shoulder_that_sinks_collapses():
+    def sinking_beside_a_taller_lobe(share):
+        return -1 + 6 * (bump(1.0) + bump(3.3) + bump(5.0)) + (2.2 - 4 * share) * bump(1.75)
+
+    (event,) = events_of(sinking_beside_a_taller_lobe(share) for share in np.linspace(0, 1, 21))
+    assert event.fate is Fate.COLLAPSE
