@@ -161,6 +161,8 @@ class RunWriter:
     ) -> netCDF4.Dataset:
         with writing(self.part, self._kept):
             self._room.take(0)
+            # A damaged one that `resume` could not open stays open inside HDF5: the new file is another one.
+            _remove(self.part)
             dataset = netCDF4.Dataset(self.part, "w", format="NETCDF4")
             try:
                 create_layout(dataset, s, segment, attributes)

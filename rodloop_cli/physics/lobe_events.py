@@ -32,8 +32,8 @@ VANISHED = 0.01
 """Depth of a valley, as a share of the range of curvature, below which two lobes are one."""
 
 SHOULDER = 0.25
-"""Curvature over that of the top of the neighbour. When the valley between them had vanished, this was found to be 0.4 to 1
-for lobes that merged, 0.15 for one that then sank."""
+"""Curvature over that of the neighbour's top. Once the valley between them had vanished, this was 0.4 to 1 for
+lobes that merged, 0.15 for one that then sank."""
 
 
 class Fate(Enum):
