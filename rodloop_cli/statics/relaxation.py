@@ -23,6 +23,9 @@ WEAKEST_HOLD = 1e-6
 """Smallest μ: weak enough for quadratic convergence, strong enough to keep the rigid motions determined."""
 
 CONVERGED = 1e-12
+STALLED = 1e-7
+"""Corrections of the angles below this that no longer shrink are round-off: 1e-8 at a stiffness ratio of 10³."""
+
 MOST_STEPS = 200
 
 
@@ -39,7 +42,7 @@ def relax(equations: BoxEquations, unknowns: Array) -> Array:
         unknowns = unknowns + min(1.0, LARGEST_TURN / max(size, 1e-300)) * correction
         position = equations.shape(unknowns[None])[1]
         # Round-off is reached when a tiny correction no longer shrinks.
-        if size < CONVERGED or (size < 1e-9 and size > 0.5 * before):
+        if size < CONVERGED or (size < STALLED and size > 0.5 * before):
             return unknowns
         hold, before = max(WEAKEST_HOLD, hold * min(1.0, size)), size
     raise ConvergenceError(f"no equilibrium found in {MOST_STEPS} steps at p = {equations.load.p:g}")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from rodloop_cli.sweep.executors import Crew
 from rodloop_cli.sweep.manifest import Manifest
-from rodloop_cli.sweep.worker import Ending, Report, Task, failure, run_member
+from rodloop_cli.sweep.task import Ending, Report, Task, failure, run_member
 
 PATIENCE = 0.5
 """Seconds between two looks at members that another sweep is running."""

@@ -18,7 +18,7 @@ from rodloop_cli.sweep.gather import gather
 from rodloop_cli.sweep.ledger import Ledger
 from rodloop_cli.sweep.manifest import SUMMARY
 from rodloop_cli.sweep.plan import Member, Plan, Shard, planned
-from rodloop_cli.sweep.worker import CLAIMS, Ending, Report, Task
+from rodloop_cli.sweep.task import CLAIMS, Ending, Report, Task
 
 DEFAULT_JOBS = 2
 Watcher = Callable[[Report], None]

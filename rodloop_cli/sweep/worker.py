@@ -9,11 +9,8 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from enum import Enum, auto
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from threadpoolctl import threadpool_limits
 
@@ -22,47 +19,17 @@ from rodloop_cli.dataset.lock import OutputLock
 from rodloop_cli.dataset.writer import RunWriter
 from rodloop_cli.errors import ConvergenceError, RodloopError
 from rodloop_cli.simulation import Run
-from rodloop_cli.sweep.columns import Row, Status, status_of
+from rodloop_cli.sweep.columns import Row, status_of
 from rodloop_cli.sweep.ledger import Ledger
 from rodloop_cli.sweep.manifest import Manifest
 from rodloop_cli.sweep.observe import Nowhere, Observer
-
-CLAIMS = ".claims"
-"""Folder of the locks that members are run under."""
+from rodloop_cli.sweep.task import CLAIMS, Ending, Report, Task, failure
 
 _ONE_AT_A_TIME = threading.Lock()
 """HDF5 must not be entered by two threads, and some executors run several tasks in a process."""
 
 
-@dataclass(frozen=True)
-class Task:
-    """Everything a worker needs to run a member; ``values`` are the keys of its case file."""
-
-    folder: str
-    name: str
-    key: str
-    values: dict[str, Any]
-    keeps_fields: bool
-
-
-class Ending(Enum):
-    """What became of a task."""
-
-    ran = auto()
-    failed = auto()
-    was_done = auto()
-    is_busy = auto()
-
-
-@dataclass(frozen=True)
-class Report:
-    """What a worker sends back; everything else is in the manifest."""
-
-    ending: Ending
-    outcome: str = ""
-
-
-def run_member(task: Task) -> Report:
+def run(task: Task) -> Report:
     """Run a member, unless another sweep has done so in the meantime or is just doing it.
 
     A member that fails is reported, not raised. Raises OSError if the folder cannot be written.
@@ -78,11 +45,6 @@ def run_member(task: Task) -> Report:
         row = _run(task)
         Manifest(folder).append(row)
         return Report(Ending.ran if status_of(row).is_done else Ending.failed, str(row["outcome"]))
-
-
-def failure(name: str, key: str, outcome: str) -> Row:
-    """The row of a member that has no result."""
-    return {"key": key, "member": name, "status": int(Status.failed), "outcome": outcome}
 
 
 @cache

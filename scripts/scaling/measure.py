@@ -30,16 +30,16 @@ from rodloop_cli.sweep.ledger import Ledger
 from rodloop_cli.sweep.manifest import MANIFEST, Manifest
 from rodloop_cli.sweep.observe import Nowhere
 from rodloop_cli.sweep.plan import planned
-from rodloop_cli.sweep.worker import Task, run_member
+from rodloop_cli.sweep.task import Task, run_member
 
 REPEATS = 3
 PHASE_DIAGRAM = Path(__file__).parents[2] / "configs" / "sweeps" / "phase_diagram.yaml"
 
 SPEEDUP = """
-base: {p: 8, t_end: 1.0, snapshots: 50}
+base: {p: 8, t_end: 2.0}
 grid:
   stiffness_ratio: {linspace: [2, 6, 10]}
-  p: {linspace: [6, 25, 20]}
+  p: {linspace: [5, 100, 20]}
 """
 TINY = """
 base: {{p: 4, t_end: 1.0}}
