@@ -21,6 +21,7 @@ REUSE_BELOW = 0.05
 """A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
 
 STARTING_ACCURACY = 1e-8
+STARTING_LENGTHS = (1.0, 10.0, 100.0)
 
 ITERATION_ERROR = 0.03
 """Newton's share of the position error allowed in a step."""
@@ -119,11 +120,15 @@ def _motion(method: RadauIIA, state: State, size: float) -> Motion:
 def started(state: State, size: float) -> tuple[State, Step]:
     """The state at rest with the acceleration and the forces that hold just after the load is switched on.
 
-    They are those of one backward Euler step of negligible length ``size``, which is returned too.
-    Raises SingularSystem if that step cannot be solved.
+    They are those of one backward Euler step of negligible length ``size``, or of a longer one where Newton fails: the
+    shorter the step, the shorter the waves that leave a jump of the moment, and the cells are what they are. The step
+    is returned too. Raises SingularSystem if none can be solved.
     """
-    step = RadauStepper(1, Work()).step(state, None, size, STARTING_ACCURACY)
-    if step is None:
-        raise SingularSystem("the equations just after the load is switched on cannot be solved")
-    end = step.end
-    return replace(state, acceleration=end.acceleration, force=end.force), step
+    for longer in STARTING_LENGTHS:
+        step = RadauStepper(1, Work()).step(state, None, longer * size, STARTING_ACCURACY)
+        if step is not None:
+            return replace(state, acceleration=step.end.acceleration, force=step.end.force), step
+    raise SingularSystem(
+        "the equations just after the load is switched on cannot be solved; "
+        "try a smaller perturbation, a smaller load or contrast, or more cells (N)"
+    )

@@ -65,3 +65,10 @@ def test_an_end_that_the_sum_of_steps_misses_by_a_rounding():
     last = list(run.marcher)[-1].end
     run.marcher.state = dataclasses.replace(last, time=float(np.nextafter(1.0, 0.0)))
     assert list(run.marcher) == []
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1e3])
+def test_a_jump_of_the_moment_on_coarse_cells_starts_with_a_longer_step(ratio):
+    case = {"p": 1.0, "stiffness_ratio": ratio, "scheme": "bdf2", "N": 100, "dt": 0.018, "t_end": 0.09, **ROWS}
+    trial, _ = attempt(case | {"perturbation": [{"mode": 2, "amplitude": 5e-3}]}, 20)
+    assert trial.kind == "end"
