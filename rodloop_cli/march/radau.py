@@ -21,7 +21,7 @@ REUSE_BELOW = 0.05
 """A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
 
 STARTING_ACCURACY = 1e-8
-STARTING_LENGTHS = (1.0, 10.0, 100.0)
+STARTING_LENGTHS = (1.0, 10.0)
 
 ITERATION_ERROR = 0.03
 """Newton's share of the position error allowed in a step."""
