@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from rodloop_cli.march.dense import Shapes, integrals_of_basis, shapes_at
+from rodloop_cli.march.dense import Shapes
 from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array, gauss_rule
+from rodloop_cli.numerics.interpolation import interpolation
 from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.equations import Load
 
@@ -19,6 +20,7 @@ class EnergyAccount:
         self._load = load
         self._dissipated = 0.0
         self._first: tuple[float, float] | None = None
+        self._power: tuple[Step, Array] | None = None
         self.largest_residual = 0.0
         self.largest_change = 0.0
 
@@ -73,7 +75,9 @@ class EnergyAccount:
         if self._load.zeta_perp == 0:
             return np.zeros(len(fractions))
         nodes = gauss_rule(len(step.nodes) + 1).points
-        shapes = shapes_at(step, step.start.time + step.size * nodes)
-        power = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
-        taken: Array = step.size * integrals_of_basis(nodes, fractions) @ power
+        if self._power is None or self._power[0] is not step:
+            shapes = Shapes(step, step.start.time + step.size * nodes)
+            power = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
+            self._power = step, power
+        taken: Array = step.size * interpolation(tuple(nodes.tolist())).integrals(fractions) @ self._power[1]
         return taken

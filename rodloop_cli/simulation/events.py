@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
-from rodloop_cli.march.dense import shapes_at
+from rodloop_cli.march.dense import Shapes
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.roots import bracketed_root
@@ -87,7 +87,7 @@ class CrossingWatch:
 
     def _locate(self, step: Step, before: float, after: float) -> float:
         def clearance(fraction: float) -> float:
-            position = shapes_at(step, np.array([step.start.time + fraction * step.size])).position
+            position = Shapes(step, np.array([step.start.time + fraction * step.size])).position
             return crossing_indicator(*self._located(position)[:, 0])
 
         # The polygons, and the dense output and the stages, differ a little, and so may their verdicts.
@@ -140,7 +140,7 @@ class AreaExtrema:
 
     def _locate(self, step: Step, quadrature: Quadrature, between: tuple[float, float], until: float) -> None:
         def at(fraction: float) -> tuple[float, float]:
-            shapes = shapes_at(step, np.array([step.start.time + fraction * step.size]))
+            shapes = Shapes(step, np.array([step.start.time + fraction * step.size]))
             area = quadrature.area(shapes.position[..., :-1], shapes.tangent)[0]
             return float(quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)[0]), float(area)
 

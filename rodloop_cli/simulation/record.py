@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from rodloop_cli.march.dense import Shapes, shapes_at
+from rodloop_cli.march.dense import Shapes
 from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.crossing import crosses_itself
@@ -45,7 +45,7 @@ class Recorder:
         """The row at t = 0 if it is asked for, from the negligible step that gave the forces there."""
         self.begun = True
         self._use(step.start.equations)
-        rows = list(self._rows(step, shapes_at(step, np.array([step.start.time])), size=0.0, iterations=0))
+        rows = list(self._rows(step, Shapes(step, np.array([step.start.time])), size=0.0, iterations=0))
         if self._times[0] <= 0:
             self._next = 1
             yield from rows
@@ -65,7 +65,7 @@ class Recorder:
             times = np.append(self._times[self._next : due], stopped)
         self._next = due
         if len(times):
-            for row in self._rows(step, shapes_at(step, times), step.size, step.newton_iterations):
+            for row in self._rows(step, Shapes(step, times), step.size, step.newton_iterations):
                 yield row | {"crossing": self._crossing(row, crossed)}
         self.account.close(step, self._quadrature)
 
@@ -118,4 +118,3 @@ class Recorder:
             "velocity_x": u,
             "velocity_y": v,
         }
-
