@@ -15,12 +15,12 @@ class Quadrature:
     """Integrals around the loop of quantities given at the Gauss points."""
 
     def __init__(self, mesh: Mesh, rule: GaussRule) -> None:
-        self._weights = mesh.lengths[:, None] * rule.weights
+        self._weights = (mesh.lengths[:, None] * rule.weights).ravel()
         self._mesh = mesh
 
     def integral(self, density: Array) -> Array:
         """∮ density ds for density (…, n, m)."""
-        integral: Array = np.einsum("...nm,nm->...", density, self._weights)
+        integral: Array = density.reshape(*density.shape[:-2], -1) @ self._weights
         return integral
 
     def area(self, position: Array, tangent: Array) -> Array:

@@ -4,6 +4,7 @@ All are located on the dense output of the step they fall into, to round-off of 
 """
 
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
@@ -126,12 +127,11 @@ class AreaExtrema:
         quadrature = self._quadrature_on(step.start.equations)
         rates = quadrature.area_rate(step.fields.velocity[..., :-1], (step.fields.cosine, step.fields.sine))
         before = 0.0
-        for node, rate in zip(step.nodes, rates, strict=True):
-            sign = float(np.sign(rate))
+        for node, sign in zip(step.nodes.tolist(), np.sign(rates).tolist(), strict=True):
             if self.sign * sign < 0:
-                self._locate(step, quadrature, (before, float(node)), np.inf if until is None else until)
+                self._locate(step, quadrature, (before, node), np.inf if until is None else until)
             self.sign = sign or self.sign
-            before = float(node)
+            before = node
 
     def _quadrature_on(self, equations: BoxEquations) -> Quadrature:
         if self._quadrature is None or equations is not self._equations:
@@ -139,16 +139,19 @@ class AreaExtrema:
         return self._quadrature
 
     def _locate(self, step: Step, quadrature: Quadrature, between: tuple[float, float], until: float) -> None:
+        @cache
         def at(fraction: float) -> tuple[float, float]:
             shapes = Shapes(step, np.array([step.start.time + fraction * step.size]))
-            area = quadrature.area(shapes.position[..., :-1], shapes.tangent)[0]
-            return float(quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)[0]), float(area)
+            rate = quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)
+            return rate.item(), quadrature.area(shapes.position[..., :-1], shapes.tangent).item()
 
         before, after = between
         falling = self.sign < 0
         if at(before)[0] * at(after)[0] > 0:
-            return
-        fraction = bracketed_root(lambda f: at(f)[0], before, after, TIME_PRECISION)
+            # Stages and dense output differ a little: the change of sign lies just beyond one of the ends.
+            fraction = min(between, key=lambda f: abs(at(f)[0]))
+        else:
+            fraction = bracketed_root(lambda f: at(f)[0], before, after, TIME_PRECISION)
         time = step.start.time + fraction * step.size
         if time <= until:
             (self.minima if falling else self.maxima).append((time, at(fraction)[1]))
