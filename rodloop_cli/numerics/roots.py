@@ -9,13 +9,17 @@ MOST_EVALUATIONS = 200
 
 
 def bracketed_root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:
-    """A point where ``function`` changes sign, to ``tolerance``, on the side of ``high``; ends must differ in sign.
+    """A point where ``function`` changes sign, to ``tolerance``, on the side of ``high``; ends must differ in sign."""
+    return root_between(function, (low, function(low)), (high, function(high)), tolerance)
+
+
+def root_between(function: Callable[[float], float], below: Point, above: Point, tolerance: float) -> float:
+    """The same with the values at the ends, which need not be exact if their signs are what counts.
 
     Chandrupatla's method [Advances in Engineering Software 28 (1997) 145], begun with a secant: inverse quadratic
     interpolation where the function is like a parabola, bisection elsewhere, which also serves one that jumps. No
     guess comes nearer to an end than half the tolerance, so that the bracket closes once the root is found.
     """
-    below, above = (low, function(low)), (high, function(high))
     positive = above[1] > 0
     guess = _secant(below, above)
     for _ in range(MOST_EVALUATIONS):
