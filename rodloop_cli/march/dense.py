@@ -11,7 +11,7 @@ import numpy as np
 
 from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.numerics.interpolation import interpolation
+from rodloop_cli.numerics.interpolation import interpolation, series
 from rodloop_cli.physics.equations import NODAL, THETA
 
 
@@ -24,8 +24,9 @@ class Shapes:
     def __init__(self, step: Step, times: Array) -> None:
         self.times = times
         self._step = step
-        self._fractions = np.clip((times - step.start.time) / step.size, 0.0, 1.0)
-        self._nodes = tuple(step.nodes.tolist())
+        self._series = series(fractions(step, times), len(step.nodes) + 2)
+        nodes = tuple(step.nodes.tolist())
+        self._by_stages, self._by_rates = interpolation(nodes), interpolation((0.0, *nodes))
 
     @property
     def tangent(self) -> Array:
@@ -78,7 +79,7 @@ class Shapes:
     def _moved(self) -> Array:
         """(k, n, 6 + m): positions and angles among the unknowns; the rest has no meaning."""
         step = self._step
-        weights = step.size * interpolation((0.0, *self._nodes)).integrals(self._fractions)
+        weights = self._series @ (step.size * self._by_rates.integrals)
         moved: Array = _weighted(weights[:, 1:], step.rates[None])[0]
         moved += weights[:, 0, None, None] * step.start.rates
         moved += step.start.unknowns
@@ -92,11 +93,18 @@ class Shapes:
 
     @cached_property
     def _rate_weights(self) -> Array:
-        return interpolation((0.0, *self._nodes)).values(self._fractions)
+        weights: Array = self._series[:, :-1] @ self._by_rates.values
+        return weights
 
     @cached_property
     def _stage_weights(self) -> Array:
-        return interpolation(self._nodes).values(self._fractions)
+        weights: Array = self._series[:, :-2] @ self._by_stages.values
+        return weights
+
+
+def fractions(step: Step, times: Array) -> Array:
+    """(k,): where times within the step, but for round-off, lie between its start (0) and its end (1)."""
+    return np.minimum(np.maximum((times - step.start.time) / step.size, 0.0), 1.0)
 
 
 def _weighted(weights: Array, stages: Array) -> Array:

@@ -12,20 +12,16 @@ from rodloop_cli.numerics.gauss import Array
 
 
 class Interpolation:
-    """The polynomials through values at ``nodes`` (n,), as weights (k, n) of the values for k points."""
+    """The polynomials through values at ``nodes`` (n,).
+
+    values, integrals: (n, n) and (n + 1, n), what turns a `series` at k points into the weights (k, n) of the values
+    for the polynomial there and for its integral from 0 to there.
+    """
 
     def __init__(self, nodes: tuple[float, ...]) -> None:
         degree = len(nodes) - 1
-        self._values = np.linalg.inv(chebyshev.chebvander(2 * np.array(nodes) - 1, degree))
-        self._integrals: Array = np.asarray(chebyshev.chebint(self._values, lbnd=-1, scl=0.5), dtype=float)
-
-    def values(self, points: Array) -> Array:
-        """At points (k,) in [0, 1]."""
-        return _expanded(points, self._values)
-
-    def integrals(self, points: Array) -> Array:
-        """From 0 to points (k,) in [0, 1]."""
-        return _expanded(points, self._integrals)
+        self.values = np.linalg.inv(chebyshev.chebvander(2 * np.array(nodes) - 1, degree))
+        self.integrals: Array = np.asarray(chebyshev.chebint(self.values, lbnd=-1, scl=0.5), dtype=float)
 
 
 @cache
@@ -34,8 +30,8 @@ def interpolation(nodes: tuple[float, ...]) -> Interpolation:
     return Interpolation(nodes)
 
 
-def _expanded(points: Array, coefficients: Array) -> Array:
-    """Sum of T_j(2 point - 1) coefficients[j]: (k, n)."""
+def series(points: Array, terms: int) -> Array:
+    """(k, terms): T_j(2 point - 1) for points (k,) in [0, 1]."""
     angles = np.arccos(2 * points - 1)
-    series: Array = np.cos(np.multiply.outer(angles, np.arange(len(coefficients)))) @ coefficients
-    return series
+    polynomials: Array = np.cos(angles[:, None] * np.arange(terms))
+    return polynomials

@@ -21,6 +21,9 @@ Row = dict[str, float | Array]
 ROUND_OFF = 1e-12
 """Of the time: the sum of the steps must not miss a stored time by this much."""
 
+TURNS = np.array([0.0] * 7 + [LENGTH])[:, None, None]
+"""What the sampled quantities gain round the loop: θ alone, the last one, does not come back to where it was."""
+
 
 def output_points(count: int) -> Array:
     """(S,): uniform arclengths in [0, 2π)."""
@@ -103,9 +106,8 @@ class Recorder:
     def _profiles(self, shapes: Shapes) -> dict[str, Array]:
         """(k, S) of every profile."""
         sample = self._sampler
-        vectors = np.concatenate([shapes.position, shapes.velocity, shapes.force, shapes.moment[None]])
-        x, y, u, v, fx, fy, moment = sample(vectors)
-        theta = sample(shapes.theta, LENGTH)
+        quantities = (shapes.position, shapes.velocity, shapes.force, shapes.moment[None], shapes.theta[None])
+        x, y, u, v, fx, fy, moment, theta = sample(np.concatenate(quantities), TURNS)
         cosine, sine = np.cos(theta), np.sin(theta)
         return {
             "x": x,
