@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rodloop_cli.errors import SingularSystem
-from rodloop_cli.numerics.condensed import CondensedSystems
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Fields, Motion, X, Y
+from rodloop_cli.physics.equations import BoxEquations, Fields, Motion
+from rodloop_cli.physics.whole_loop import LoopEquations
 
 Complex = NDArray[np.complex128]
+Equations = BoxEquations | LoopEquations
 
 SLOW = 0.3
 """Contraction above which the linearisation is renewed in the middle of an iteration."""
@@ -49,9 +49,7 @@ class StageModes:
 
 
 class Solution(NamedTuple):
-    """Stage values that solve the equations: unknowns (s, n, 6 + m), the fields, the iterations and their
-    contraction.
-    """
+    """Stage values that solve the equations: unknowns (s, ...), the fields, the iterations and their contraction."""
 
     unknowns: Array
     fields: Fields
@@ -62,22 +60,12 @@ class Solution(NamedTuple):
 class Linearisation:
     """The factored systems of one instant and one matrix of rates."""
 
-    def __init__(self, equations: BoxEquations, modes: StageModes, step: float, instant: "Instant") -> None:
+    def __init__(self, equations: Equations, modes: StageModes, step: float, instant: "Instant") -> None:
         self.equations, self.step, self.instant, self._modes = equations, step, instant, modes
-        parts = equations.linearise(*instant)
-        rate = (modes.eigenvalues / step)[:, None, None, None]
-        responses = parts[0] + rate**2 * parts[1]
-        if len(parts) > 2:
-            responses += rate * parts[2]
-        if not np.isfinite(responses.view(float)).all():
-            raise SingularSystem("the linearised system is not finite")
-        try:
-            self.systems = CondensedSystems(responses, NODAL)
-        except np.linalg.LinAlgError as error:
-            raise SingularSystem("a cell's equations are singular") from error
+        self.systems = equations.factored(modes.eigenvalues / step, *instant)
 
     def correction(self, residual: Array) -> Array:
-        """Newton's correction (s, n, 6 + m) of the stages."""
+        """Newton's correction of the stages, in the shape of their ``residual`` (s, ...)."""
         stages = len(residual)
         coordinates = self._modes.to_modes @ residual.reshape(stages, -1)
         solved = self.systems.solve(coordinates.reshape(-1, *residual.shape[1:]))
@@ -101,7 +89,7 @@ class Instant(NamedTuple):
 
 
 def solve_stages(
-    equations: BoxEquations,
+    equations: Equations,
     motion: Motion,
     guess: Array,
     linearisation: Linearisation | None,
@@ -119,9 +107,9 @@ def solve_stages(
     last, contraction = np.inf, 0.0
     for iteration in range(1, MAX_ITERATIONS + 1):
         correction = linearisation.correction(equations.residual(unknowns, fields))
-        unknowns = unknowns + correction
+        unknowns, before = unknowns + correction, fields.position
         fields = equations.fields(unknowns, motion)
-        size = position_size(correction, equations.mesh.lengths)
+        size = float(np.abs(fields.position - before).max())
         if not np.isfinite(size):
             break
         if size < CERTAIN * target:
@@ -137,15 +125,6 @@ def solve_stages(
                 break
         last = size
     return None, linearisation
-
-
-def position_size(correction: Array, lengths: Array) -> float:
-    """How far a correction (..., n, 6 + m) moves the rod: nodes directly, points inside a cell (n,) long by its
-    turning.
-    """
-    nodes = correction[..., X : Y + 1]
-    angles = np.abs(correction[..., NODAL:]).max(axis=-1)
-    return max(float(np.abs(nodes).max()), float((angles * lengths).max()))
 
 
 def _converged(size: float, contraction: float, target: float) -> bool:

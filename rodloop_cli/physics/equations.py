@@ -14,6 +14,7 @@ Unknowns are stored cell by cell, (..., n, 6 + m): x, y, θ, M, Fx, Fy at the le
 round the loop.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
@@ -21,11 +22,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rodloop_cli.errors import SingularSystem
+from rodloop_cli.numerics.condensed import CondensedSystems
 from rodloop_cli.numerics.gauss import GaussRule
 from rodloop_cli.physics.rod import Array, Mesh
 
+Complex = NDArray[np.complex128]
+
 X, Y, THETA, MOMENT, FX, FY = range(6)
 NODAL = 6
+POSITION, FORCE = slice(X, Y + 1), slice(FX, FY + 1)
 
 
 @dataclass(frozen=True)
@@ -72,64 +78,55 @@ class Fields(NamedTuple):
 _AT_REST = np.zeros(0)
 
 
-class BoxEquations:
-    """Eqs. (10)-(13) on one mesh under one load."""
+class Balance(ABC):
+    """Eqs. (10)-(13) integrated along a mesh, from start values to the Gauss points and the right ends of the cells.
+
+    What is unknown, and what is left to solve, the kinds of equations below say.
+    """
 
     def __init__(self, mesh: Mesh, rule: GaussRule, load: Load) -> None:
         self.mesh, self.rule, self.load = mesh, rule, load
-        self._integrate = rule.to_points_and_end
-        self._integrate_rows = np.ascontiguousarray(self._integrate.T)
-        self._length = mesh.lengths[:, None]
-        self._length_by_stiffness = (mesh.lengths / mesh.stiffness)[:, None]
         self._density = mesh.density[:, None]
-        self._turn = np.zeros((mesh.cells, NODAL))
-        self._turn[-1, THETA] = 2 * pi
+        self._compliance = 1 / mesh.stiffness[:, None]
+
+    @abstractmethod
+    def angles(self, unknowns: Array) -> Array:
+        """(k, n, m): the angles at the Gauss points."""
+
+    @abstractmethod
+    def _start(self, unknowns: Array, components: slice | int) -> Array:
+        """The values (components, k, cells, 1) from which the integrals start."""
+
+    @abstractmethod
+    def _integral(self, values: Array) -> Array:
+        """(..., n, m + 1): integrals of ``values`` (..., n, m) up to the Gauss points and the right ends."""
 
     def fields(self, unknowns: Array, motion: Motion | None) -> Fields:
-        """Integrate (10)-(13) through every cell from ``unknowns`` (k, n, 6 + m); ``motion=None`` is statics."""
+        """Integrate (10)-(13) from ``unknowns`` of k instants; ``motion=None`` is statics."""
         direction, position = self.shape(unknowns)
         cosine, sine = direction
         velocity, acceleration = (_AT_REST, _AT_REST) if motion is None else _kinematics(position, motion)
-        density = self._force_density(direction, velocity, acceleration)
-        force = self._from_node(unknowns, slice(FX, FY + 1), density * self._length)
+        force = self._integral(self._force_density(direction, velocity, acceleration))
+        force += self._start(unknowns, FORCE)
         shear = force[0, ..., :-1] * sine
         shear -= force[1, ..., :-1] * cosine
         if self.load.rotary_inertia and motion is not None:
-            shear += self._density * self.load.rotary_inertia * _spin_rate(unknowns[..., NODAL:], motion)
-        shear *= self._length
-        moment = unknowns[..., MOMENT, None] + shear @ self._integrate
-        turning = (moment[..., :-1] * self._length_by_stiffness) @ self._integrate
-        turning += unknowns[..., THETA, None]
+            shear += self._density * self.load.rotary_inertia * _spin_rate(self.angles(unknowns), motion)
+        moment = self._integral(shear)
+        moment += self._start(unknowns, MOMENT)
+        turning = self._integral(moment[..., :-1] * self._compliance)
+        turning += self._start(unknowns, THETA)
         return Fields(cosine, sine, position, velocity, acceleration, force, moment, turning)
 
     def shape(self, unknowns: Array) -> tuple[Array, Array]:
         """Tangent (2, k, n, m) at the Gauss points; position (2, k, n, m + 1) there and at the right ends, by (10)."""
-        theta = unknowns[..., NODAL:]
+        theta = self.angles(unknowns)
         direction = np.empty((2, *theta.shape))
         np.cos(theta, out=direction[0])
         np.sin(theta, out=direction[1])
-        return direction, self._from_node(unknowns, slice(X, Y + 1), direction * self._length)
-
-    def residual(self, unknowns: Array, fields: Fields) -> Array:
-        """(k, n, 6 + m): by how much each cell misses the next node, then the integral of M/b the angle."""
-        out = np.empty_like(unknowns)
-        out[..., X], out[..., Y] = fields.position[..., -1]
-        out[..., FX], out[..., FY] = fields.force[..., -1]
-        out[..., MOMENT] = fields.moment[..., -1]
-        out[..., THETA] = fields.theta[..., -1]
-        out[..., NODAL:] = fields.theta[..., :-1]
-        out[..., NODAL:] -= unknowns[..., NODAL:]
-        out[..., :-1, :NODAL] -= unknowns[..., 1:, :NODAL]
-        out[..., -1, :NODAL] -= unknowns[..., 0, :NODAL]
-        out[..., :NODAL] -= self._turn
-        return out
-
-    def _from_node(self, unknowns: Array, components: slice, increments: Array) -> Array:
-        """(2, k, n, m + 1): a vector at the left nodes plus the integral of ``increments``."""
-        out: Array = increments @ self._integrate
-        start = unknowns[..., components]
-        out += start.transpose(start.ndim - 1, *range(start.ndim - 1))[..., None]
-        return out
+        position = self._integral(direction)
+        position += self._start(unknowns, POSITION)
+        return direction, position
 
     def _force_density(self, direction: Array, velocity: Array, acceleration: Array) -> Array:
         """(2, k, n, m): F' by (11) and (12)."""
@@ -148,6 +145,55 @@ class BoxEquations:
         along *= self.load.gamma - 1
         drag: Array = (velocity + along * direction) * self.load.zeta_perp
         return drag
+
+
+class BoxEquations(Balance):
+    """The equations cell by cell: every cell starts from its own node, and must end where the next begins."""
+
+    def __init__(self, mesh: Mesh, rule: GaussRule, load: Load) -> None:
+        super().__init__(mesh, rule, load)
+        self._integrate = rule.to_points_and_end
+        self._integrate_rows = np.ascontiguousarray(self._integrate.T)
+        self._length = mesh.lengths[:, None]
+        self._length_by_stiffness = (mesh.lengths / mesh.stiffness)[:, None]
+        self._turn = np.zeros((mesh.cells, NODAL))
+        self._turn[-1, THETA] = 2 * pi
+
+    def compressed(self, unknowns: Array) -> Array:
+        """Boxes store everything."""
+        return unknowns
+
+    def expanded(self, unknowns: Array, fields: Fields) -> Array:
+        """Boxes store everything."""
+        return unknowns
+
+    def angles(self, unknowns: Array) -> Array:
+        """(k, n, m): a view."""
+        return unknowns[..., NODAL:]
+
+    def _start(self, unknowns: Array, components: slice | int) -> Array:
+        start = unknowns[..., components]
+        if isinstance(components, int):
+            return start[..., None]
+        return start.transpose(start.ndim - 1, *range(start.ndim - 1))[..., None]
+
+    def _integral(self, values: Array) -> Array:
+        integral: Array = (values * self._length) @ self._integrate
+        return integral
+
+    def residual(self, unknowns: Array, fields: Fields) -> Array:
+        """(k, n, 6 + m): by how much each cell misses the next node, then the integral of M/b the angle."""
+        out = np.empty_like(unknowns)
+        out[..., X], out[..., Y] = fields.position[..., -1]
+        out[..., FX], out[..., FY] = fields.force[..., -1]
+        out[..., MOMENT] = fields.moment[..., -1]
+        out[..., THETA] = fields.theta[..., -1]
+        out[..., NODAL:] = fields.theta[..., :-1]
+        out[..., NODAL:] -= unknowns[..., NODAL:]
+        out[..., :-1, :NODAL] -= unknowns[..., 1:, :NODAL]
+        out[..., -1, :NODAL] -= unknowns[..., 0, :NODAL]
+        out[..., :NODAL] -= self._turn
+        return out
 
     def displacement(self, cosine: Array, sine: Array, correction: Array) -> Array:
         """(2, n, m + 1): how far a small ``correction`` (n, 6 + m) of the unknowns moves the Gauss points and right
@@ -219,6 +265,24 @@ class BoxEquations:
         cross, square = 2 * sine * cosine, cosine**2 - sine**2
         density[0, 0][:, *angles] += excess * (square * v - cross * u)
         density[0, 1][:, *angles] += excess * (square * u + cross * v)
+
+    def factored(
+        self, rates: Complex, cosine: Array, sine: Array, force: Array, velocity: Array
+    ) -> CondensedSystems:
+        """The factored systems for time derivatives λ in ``rates`` (E,), the first of which is real; the other
+        arguments are those of `linearise`. Raises SingularSystem.
+        """
+        parts = self.linearise(cosine, sine, force, velocity)
+        rate = rates[:, None, None, None]
+        responses = parts[0] + rate**2 * parts[1]
+        if len(parts) > 2:
+            responses += rate * parts[2]
+        if not np.isfinite(responses.view(float)).all():
+            raise SingularSystem("the linearised system is not finite")
+        try:
+            return CondensedSystems(responses, NODAL)
+        except np.linalg.LinAlgError as error:
+            raise SingularSystem("a cell's equations are singular") from error
 
     def load_response(self, cosine: Array, sine: Array, density: Array) -> Array:
         """(n, 6 + m): the cells' response to an extra force density (2, n, m), in the rows of `residual`."""
