@@ -11,17 +11,18 @@ import numpy as np
 
 from rodloop_cli.errors import SingularSystem
 from rodloop_cli.march.predictor import Past, predict
-from rodloop_cli.march.stages import Equations, Instant, Linearisation, StageModes, solve_stages
+from rodloop_cli.march.stages import Equations, Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.radau import RadauIIA, radau_iia
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Fields, Motion
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import NODAL, Fields, Instant, Motion
 from rodloop_cli.physics.whole_loop import LoopEquations
 
 REUSE_BELOW = 0.05
 """A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
 
-MOST_FULL = 100
+MOST_FULL = 64
 """Gauss points up to which one full matrix is faster than boxes."""
 
 STARTING_ACCURACY = 1e-8
@@ -59,13 +60,13 @@ class RadauStepper:
         def renew(fields: Fields, trusted: bool) -> Linearisation:
             self.work.factorizations += 1
             instant = Instant.of_stage(fields, method.stages // 2, None if trusted else state.force)
-            return self.linearised(equations, size, instant)
+            return self.linearised(state.equations, size, instant)
 
         try:
             solution, self.linearisation = solve_stages(
                 equations,
                 motion,
-                equations.compressed(guess),
+                guess,
                 self._kept(equations, size),
                 renew,
                 ITERATION_ERROR * allowance,
@@ -77,15 +78,14 @@ class RadauStepper:
             return None
         self.work.newton_iterations += solution.iterations
         self.contraction = solution.contraction
-        unknowns = equations.expanded(solution.unknowns, solution.fields)
-        gained = unknowns - state.unknowns
+        gained = solution.unknowns - state.unknowns
         rates = (motion.rates @ gained.reshape(method.stages, -1)).reshape(gained.shape)
         error = self._error(equations, state, solution.fields, size) / allowance
-        return Step(state, size, method.nodes, unknowns, rates, solution.fields, solution.iterations, error)
+        return Step(state, size, method.nodes, solution.unknowns, rates, solution.fields, solution.iterations, error)
 
-    def linearised(self, equations: Equations, size: float, instant: Instant) -> Linearisation:
+    def linearised(self, equations: BoxEquations, size: float, instant: Instant) -> Linearisation:
         """The factored systems of a step of this length. Raises SingularSystem."""
-        return Linearisation(equations, self._modes, size, instant)
+        return Linearisation(self._form(equations), self._modes, size, instant)
 
     def _form(self, equations: BoxEquations) -> Equations:
         """The equations in the form that is solved faster."""

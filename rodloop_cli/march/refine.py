@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array, lagrange_matrix
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.closure import Closure, left_ends
-from rodloop_cli.physics.equations import FX, FY, NODAL, THETA, BoxEquations
+from rodloop_cli.physics.equations import FX, FY, NODAL, THETA
 
 POSITION_ERROR = 0.03
 """Interpolation error inside a cell over the last Legendre coefficients of its angles times its length.

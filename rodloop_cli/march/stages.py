@@ -12,8 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rodloop_cli.march.predictor import Guess
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.physics.equations import BoxEquations, Fields, Motion
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import Fields, Instant, Motion
 from rodloop_cli.physics.whole_loop import LoopEquations
 
 Complex = NDArray[np.complex128]
@@ -49,7 +51,10 @@ class StageModes:
 
 
 class Solution(NamedTuple):
-    """Stage values that solve the equations: unknowns (s, ...), the fields, the iterations and their contraction."""
+    """Stage values that solve the equations.
+
+    unknowns: (s, n, 6 + m), those of the boxes;  iterations, contraction: of Newton.
+    """
 
     unknowns: Array
     fields: Fields
@@ -60,7 +65,7 @@ class Solution(NamedTuple):
 class Linearisation:
     """The factored systems of one instant and one matrix of rates."""
 
-    def __init__(self, equations: Equations, modes: StageModes, step: float, instant: "Instant") -> None:
+    def __init__(self, equations: Equations, modes: StageModes, step: float, instant: Instant) -> None:
         self.equations, self.step, self.instant, self._modes = equations, step, instant, modes
         self.systems = equations.factored(modes.eigenvalues / step, *instant)
 
@@ -73,25 +78,10 @@ class Linearisation:
         return correction.reshape(residual.shape)
 
 
-class Instant(NamedTuple):
-    """Where the equations are linearised: cosine, sine (n, m); force, velocity (2, n, m)."""
-
-    cosine: Array
-    sine: Array
-    force: Array
-    velocity: Array
-
-    @classmethod
-    def of_stage(cls, fields: Fields, stage: int, force: Array | None = None) -> "Instant":
-        """The instant of one stage; ``force`` (2, n, m + 1) where the stage's own is not to be trusted yet."""
-        chosen = fields.force[:, stage] if force is None else force
-        return cls(fields.cosine[stage], fields.sine[stage], chosen[..., :-1], fields.velocity[:, stage, :, :-1])
-
-
 def solve_stages(
     equations: Equations,
     motion: Motion,
-    guess: Array,
+    guess: Guess,
     linearisation: Linearisation | None,
     renew: Callable[[Fields, bool], Linearisation],
     target: float,
@@ -101,23 +91,26 @@ def solve_stages(
     ``renew(fields, trusted)`` makes a linearisation at the current fields, whose forces are trusted only after an
     iteration: those of a guess contain its accelerations, which amplify its error by Δt⁻².
     """
-    unknowns, fields = guess, equations.fields(guess, motion)
+    unknowns = equations.compressed(guess.unknowns)
+    fields = equations.guessed(unknowns, guess.force, motion)
     linearisation = linearisation or renew(fields, False)
     renewals = 0
     last, contraction = np.inf, 0.0
     for iteration in range(1, MAX_ITERATIONS + 1):
-        correction = linearisation.correction(equations.residual(unknowns, fields))
-        unknowns, before = unknowns + correction, fields.position
-        fields = equations.fields(unknowns, motion)
-        size = float(np.abs(fields.position - before).max())
+        instant = linearisation.instant
+        integrated = equations.integrated(unknowns, fields, motion, instant)
+        correction = linearisation.correction(equations.residual(unknowns, integrated))
+        unknowns = unknowns + correction
+        fields = equations.corrected(integrated, unknowns, correction, motion, instant)
+        size = float(np.abs(fields.position - integrated.position).max())
         if not np.isfinite(size):
             break
-        if size < CERTAIN * target:
-            return Solution(unknowns, fields, iteration, contraction), linearisation
         if iteration > 1:
             contraction = size / last
-            if _converged(size, contraction, target):
-                return Solution(unknowns, fields, iteration, contraction), linearisation
+        if size < CERTAIN * target or (iteration > 1 and _converged(size, contraction, target)):
+            fields = equations.finished(integrated, fields, correction, motion, instant)
+            return Solution(equations.expanded(unknowns, fields), fields, iteration, contraction), linearisation
+        if iteration > 1:
             too_slow = contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration)
             if (too_slow or contraction > SLOW) and contraction < DIVERGING and renewals < MOST_RENEWALS:
                 linearisation, renewals = renew(fields, True), renewals + 1

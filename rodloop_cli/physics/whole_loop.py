@@ -4,6 +4,10 @@ Where `BoxEquations` starts the integrals of (10)-(13) anew in every cell, here 
 first node. What is left to solve: the angles must be the integral of M/b, and the loop must close (14). On few Gauss
 points this is a small full matrix, which costs less than many small ones do.
 
+Newton's iteration is lifted [Albersmeyer & Diehl, SIAM J. Optim. 20 (2010) 1655]: the forces at all points keep the
+values that the linearised equations gave them. Forces integrated from the accelerations of an iterate contain its
+error times Δt⁻², which the product with the tangent, (13), would spread over the whole loop.
+
 With T the matrix that integrates along the loop, and Δ the differences of angles, the linearised (11)-(13) need two
 products of known matrices with cos Δ and sin Δ alone, because d(r_i)·t_j turns into T_jk cos(θ_i - θ_k).
 
@@ -16,8 +20,27 @@ import numpy as np
 
 from rodloop_cli.numerics.full import Complex, FullSystems
 from rodloop_cli.numerics.gauss import GaussRule
-from rodloop_cli.physics.equations import FORCE, FX, FY, MOMENT, NODAL, POSITION, THETA, Balance, Fields, Load, X, Y
+from rodloop_cli.physics.equations import (
+    FORCE,
+    FX,
+    FY,
+    MOMENT,
+    NODAL,
+    NOTHING,
+    POSITION,
+    THETA,
+    Balance,
+    Fields,
+    Instant,
+    Load,
+    Motion,
+    X,
+    Y,
+    kinematics,
+)
 from rodloop_cli.physics.rod import Array, Mesh
+
+_STILL = np.zeros(1)
 
 INTEGRATED = THETA
 """The first of the rows of the residual that are integrals of the shear, see `LoopEquations._from_shear`."""
@@ -88,6 +111,66 @@ class LoopEquations(Balance):
         integral: Array = values.reshape(*instants, cells * m) @ self._to_all
         return integral.reshape(*instants, cells, m + 1)
 
+    def guessed(self, unknowns: Array, force: Array, motion: Motion) -> Fields:
+        """Position and motion of a first guess of the unknowns, with a guess of the forces (2, k, n, m + 1)."""
+        tangent, position = self.shape(unknowns)
+        return Fields(tangent, position, *kinematics(position, motion), force, NOTHING, NOTHING)
+
+    def integrated(self, unknowns: Array, fields: Fields, motion: Motion, instant: Instant) -> Fields:
+        """The balances integrated with the forces of ``fields``; by how much these miss their own balance acts on the
+        tangent of ``instant``.
+        """
+        tangent = fields.tangent
+        force = self._integral(self._force_density(tangent, fields.velocity, fields.acceleration))
+        force += self._start(unknowns, FORCE)
+        missing = force - fields.force
+        shear = fields.force[0, ..., :-1] * tangent[1]
+        shear -= fields.force[1, ..., :-1] * tangent[0]
+        shear += missing[0, ..., :-1] * instant.sine
+        shear -= missing[1, ..., :-1] * instant.cosine
+        moment, theta = self._turning(unknowns, shear, motion)
+        return fields._replace(force=force, moment=moment, theta=theta)
+
+    def corrected(
+        self, integrated: Fields, unknowns: Array, correction: Array, motion: Motion, instant: Instant
+    ) -> Fields:
+        """The fields after a ``correction`` that led to ``unknowns``; the forces by their linear response to it."""
+        tangent, position = self.shape(unknowns)
+        angles = self.angles(correction)
+        turned = np.empty_like(tangent)
+        np.multiply(angles, -instant.sine, out=turned[0])
+        np.multiply(angles, instant.cosine, out=turned[1])
+        moved = self._integral(turned)
+        moved += self._start(correction, POSITION)
+        force = self._integral(self._pressure(turned) + self._resistance(moved, motion, instant))
+        force += self._start(correction, FORCE)
+        force += integrated.force
+        return Fields(tangent, position, *kinematics(position, motion), force, NOTHING, NOTHING)
+
+    def _resistance(self, moved: Array, motion: Motion, instant: Instant) -> Array:
+        """(2, k, n, m): change of inertia and drag when the loop is ``moved`` (2, k, n, m + 1)."""
+        flat = moved[..., :-1].reshape(*moved.shape[:2], -1)
+        velocity = motion.rates @ flat
+        shape = (*moved.shape[:-1], -1)
+        resistance: Array = self._density * (motion.rates @ velocity).reshape(shape)
+        if self.load.zeta_perp:
+            tangent = np.stack([instant.cosine, instant.sine])[:, None]
+            resistance += self._drag(tangent, velocity.reshape(shape))
+        return resistance
+
+    def finished(
+        self, integrated: Fields, fields: Fields, correction: Array, motion: Motion, instant: Instant
+    ) -> Fields:
+        """``fields`` after the last correction, with moments and angles by their linear response to it."""
+        gained = fields.force - integrated.force
+        shear = gained[0, ..., :-1] * instant.sine
+        shear -= gained[1, ..., :-1] * instant.cosine
+        along = instant.force[0] * instant.cosine + instant.force[1] * instant.sine
+        shear += along * self.angles(correction)
+        still = Motion(motion.rates, NOTHING, NOTHING, _STILL, _STILL)
+        moment, theta = self._turning(correction, shear, still)
+        return fields._replace(moment=integrated.moment + moment, theta=integrated.theta + theta)
+
     def residual(self, unknowns: Array, fields: Fields) -> Array:
         """(k, 6 + N): by how much the loop fails to close, then the integral of M/b the angle."""
         out = np.empty_like(unknowns)
@@ -106,37 +189,46 @@ class LoopEquations(Balance):
         λ stands for the time derivative; A2 is there only with drag. Arguments at one instant: cosine, sine (n, m);
         force, velocity (2, n, m).
         """
-        parts = 3 if self.load.zeta_perp else 2
-        c, s, angles = cosine.ravel(), sine.ravel(), np.s_[NODAL:]
-        tangent = c + 1j * s
-        turned = np.multiply.outer(tangent, tangent.conj())
-        sine_between = self._to_points * turned.imag
-        shear = np.zeros((parts, self._points, self.size))
+        c, s = cosine.ravel(), sine.ravel()
+        turned = np.multiply.outer(c + 1j * s, c - 1j * s)
+        cosine_between, sine_between = turned.real, self._to_points * turned.imag
+        velocity = velocity.reshape(2, -1)
+        shear = self._shear_response(c, s, cosine_between, sine_between)
+        shear[0].reshape(-1)[NODAL :: self.size + 1] += force[0].ravel() * c + force[1].ravel() * s
+        if self.load.zeta_perp:
+            self._add_drag_response(shear, c, s, velocity, cosine_between, sine_between)
+        matrix = np.zeros((len(shear), self.size, self.size))
+        np.matmul(self._from_shear, shear, out=matrix[:, INTEGRATED:])
+        matrix[0] += self._constant
+        self._add_closure(matrix, c, s)
+        if self.load.zeta_perp:
+            self._add_drag_force(matrix, c, s, velocity, sine_between)
+        return matrix
+
+    def _shear_response(self, c: Array, s: Array, cosine_between: Array, sine_between: Array) -> Array:
+        """(3 or 2, N, 6 + N): response of Fx sin θ - Fy cos θ to the unknowns, by the forces of film and inertia."""
+        angles = np.s_[NODAL:]
+        shear = np.zeros((3 if self.load.zeta_perp else 2, self._points, self.size))
         np.multiply(sine_between, self.load.p, out=shear[0, :, angles])
         shear[0, :, FX] = s
         np.negative(c, out=shear[0, :, FY])
         np.multiply(self._mass_before, s, out=shear[1, :, X])
         np.multiply(self._mass_before, -c, out=shear[1, :, Y])
-        np.multiply(self._twice_mass, -turned.real, out=shear[1, :, angles])
+        np.multiply(self._twice_mass, -cosine_between, out=shear[1, :, angles])
         if self.load.rotary_inertia:
             shear[1, :, angles] += self._inertia_of_turning
-        if parts == 3:
-            self._add_drag_response(shear, c, s, velocity.reshape(2, -1), turned.real, sine_between)
-        along = force.reshape(2, -1)
-        shear[0].reshape(-1)[NODAL :: self.size + 1] += along[0] * c + along[1] * s
-        out = np.zeros((parts, self.size, self.size))
-        np.matmul(self._from_shear, shear, out=out[:, INTEGRATED:])
-        out[0] += self._constant
-        np.multiply(self._weights, s, out=out[0, X, angles])
-        np.multiply(self._weights, -c, out=out[0, Y, angles])
-        np.multiply(out[0, Y, angles], self.load.p, out=out[0, FX, angles])
-        np.multiply(out[0, X, angles], -self.load.p, out=out[0, FY, angles])
-        np.multiply(self._mass_behind, s, out=out[1, FX, angles])
-        np.multiply(self._mass_behind, -c, out=out[1, FY, angles])
-        out[1, FX, X] = out[1, FY, Y] = -self._mass
-        if parts == 3:
-            self._add_drag_force(out, c, s, velocity.reshape(2, -1), sine_between)
-        return out
+        return shear
+
+    def _add_closure(self, matrix: Array, c: Array, s: Array) -> None:
+        """The rows of position and force at the end of the loop."""
+        angles = np.s_[NODAL:]
+        np.multiply(self._weights, s, out=matrix[0, X, angles])
+        np.multiply(self._weights, -c, out=matrix[0, Y, angles])
+        np.multiply(matrix[0, Y, angles], self.load.p, out=matrix[0, FX, angles])
+        np.multiply(matrix[0, X, angles], -self.load.p, out=matrix[0, FY, angles])
+        np.multiply(self._mass_behind, s, out=matrix[1, FX, angles])
+        np.multiply(self._mass_behind, -c, out=matrix[1, FY, angles])
+        matrix[1, FX, X] = matrix[1, FY, Y] = -self._mass
 
     def factored(self, rates: Complex, cosine: Array, sine: Array, force: Array, velocity: Array) -> FullSystems:
         """The factored systems for time derivatives λ in ``rates`` (E,), the first of which is real; the other
@@ -156,14 +248,14 @@ class LoopEquations(Balance):
         turning = self._drag_by_angle(c, s, velocity)
         shear[0, :, angles] += self._to_points * (s[:, None] * turning[0] - c[:, None] * turning[1])
 
-    def _add_drag_force(self, out: Array, c: Array, s: Array, velocity: Array, sine_between: Array) -> None:
+    def _add_drag_force(self, matrix: Array, c: Array, s: Array, velocity: Array, sine_between: Array) -> None:
         """The same for the forces at the end of the loop."""
         zeta, angles = self.load.zeta_perp, np.s_[NODAL:]
         tangent, across = np.stack([c, s]), np.stack([-s, c])
         weighted = self._excess * self._weights * tangent
-        out[0, FORCE, angles] -= self._weights * self._drag_by_angle(c, s, velocity)
-        out[2, FORCE, POSITION] = -weighted @ tangent.T - zeta * self._weights.sum() * np.eye(2)
-        out[2, FORCE, angles] = -zeta * self._length_behind * across - weighted @ sine_between
+        matrix[0, FORCE, angles] -= self._weights * self._drag_by_angle(c, s, velocity)
+        matrix[2, FORCE, POSITION] = -weighted @ tangent.T - zeta * self._weights.sum() * np.eye(2)
+        matrix[2, FORCE, angles] = -zeta * self._length_behind * across - weighted @ sine_between
 
     @property
     def _excess(self) -> float:
