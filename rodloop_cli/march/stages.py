@@ -37,6 +37,9 @@ ROUND_OFF = 1e-11
 STALLED = 0.5
 """A correction that is smaller than ROUND_OFF and no longer contracts is round-off, which a shorter step amplifies."""
 
+LEAST_CONTRACTION = 0.03
+"""Assumed of the corrections that follow: the first one contracts better, as most of a guess's error is smooth."""
+
 CERTAIN = 0.05
 """A correction this much smaller than the target ends the iteration whatever the contraction."""
 
@@ -123,6 +126,7 @@ def solve_stages(
 def _converged(size: float, contraction: float, target: float) -> bool:
     if contraction > STALLED and size < ROUND_OFF:
         return True
+    contraction = max(contraction, LEAST_CONTRACTION)
     return contraction < 1 and size * contraction / (1 - contraction) < target
 
 
