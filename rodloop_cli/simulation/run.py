@@ -25,7 +25,7 @@ from rodloop_cli.simulation.summary import Summary
 Progress = Callable[[float], None]
 """Told the time reached, after every step."""
 
-FIRST_STEP = 10.0
+FIRST_STEP = 100.0
 """First step proposed, in units of the starting step: the impulsive start is met with short steps."""
 
 REST = 1e-6
