@@ -28,7 +28,7 @@ MOST_FULL = 64
 STARTING_ACCURACY = 1e-8
 STARTING_LENGTHS = (1.0, 10.0)
 
-ITERATION_ERROR = 0.03
+ITERATION_ERROR = 0.01
 """Newton's share of the position error allowed in a step."""
 
 
