@@ -28,7 +28,7 @@ class Quadrature:
         """½ ∮ (x sin θ - y cos θ) ds for position, tangent (2, …, n, m); negative where the loop is inside out."""
         return self.integral(position[0] * tangent[1] - position[1] * tangent[0]) / 2
 
-    def area_rate(self, velocity: Array, tangent: Array | tuple[Array, Array]) -> Array:
+    def area_rate(self, velocity: Array, tangent: Array) -> Array:
         """∮ (u sin θ - v cos θ) ds: how fast the area grows."""
         return self.integral(velocity[0] * tangent[1] - velocity[1] * tangent[0])
 

@@ -13,11 +13,11 @@ from rodloop_cli.march.dense import Shapes
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.roots import Point, bracketed_root, root_between
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.clearance import crossing_indicator, least_clearance
 from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.crossing import crosses_itself
 from rodloop_cli.physics.energies import Quadrature
-from rodloop_cli.physics.equations import BoxEquations
 from rodloop_cli.physics.rod import LENGTH
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.statics import relax
@@ -123,7 +123,7 @@ class AreaExtrema:
     def watch(self, step: Step, until: float | None = None) -> None:
         """Look for changes of sign of dA/dt between the stages of the step, those before ``until``."""
         quadrature = self._quadrature_on(step.start.equations)
-        rates = quadrature.area_rate(step.fields.velocity[..., :-1], (step.fields.cosine, step.fields.sine))
+        rates = quadrature.area_rate(step.fields.velocity[..., :-1], step.fields.tangent)
         before: Point | None = None
         for after in zip(step.nodes.tolist(), rates.tolist(), strict=True):
             sign = float((after[1] > 0) - (after[1] < 0))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from itertools import chain
 from pathlib import Path
+from socket import gethostname
 from typing import Any
 
 import netCDF4
@@ -25,13 +27,19 @@ _WORD = str.maketrans({".": "_", "-": "_"})
 
 
 def gather(plan: Plan, folder: Path) -> Path:
-    """Write sweep.nc, whole or not at all; members without a row are marked as not run."""
+    """Write sweep.nc, whole or not at all; members without a row are marked as not run.
+
+    Sweeps that share the folder may end at the same moment: each writes a file of its own, and the last one stays.
+    """
     columns = _filled(plan, Manifest(folder).fresh())
     path = folder / SUMMARY
-    part = path.with_name(f"{SUMMARY}.part")
-    with netCDF4.Dataset(part, "w", format="NETCDF4") as dataset:
-        _write(dataset, plan, columns)
-    part.replace(path)
+    part = path.with_name(f"{SUMMARY}.{gethostname()}-{os.getpid()}.part")
+    try:
+        with netCDF4.Dataset(part, "w", format="NETCDF4") as dataset:
+            _write(dataset, plan, columns)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
     return path
 
 
