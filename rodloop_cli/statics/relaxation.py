@@ -65,7 +65,7 @@ def _held_correction(equations: BoxEquations, unknowns: Array, position: Array, 
     fields = equations.fields(unknowns[None], Motion(np.array([[rate]]), -rate * position, still))
     residual = equations.residual(unknowns[None], fields)[0]
     parts = equations.linearise(fields.cosine[0], fields.sine[0], fields.force[:, 0, :, :-1], still[:, 0, :, :-1])
-    systems = CondensedSystems((parts[0] + hold * parts[1])[None].astype(complex), NODAL)
+    systems = CondensedSystems((parts[0] + hold * parts[1])[None], NODAL)
     return np.asarray(systems.solve_real(residual))
 
 
