@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from itertools import chain
 from pathlib import Path
+from secrets import token_hex
 from typing import Any
 
 import netCDF4
@@ -28,10 +29,14 @@ def gather(plan: Plan, folder: Path) -> Path:
     """Write sweep.nc, whole or not at all; members without a row are marked as not run."""
     columns = _filled(plan, Manifest(folder).fresh())
     path = folder / SUMMARY
-    part = path.with_name(f"{SUMMARY}.part")
-    with netCDF4.Dataset(part, "w", format="NETCDF4") as dataset:
-        _write(dataset, plan, columns)
-    part.replace(path)
+    # Two sweeps that share a folder end together: each writes a file of its own.
+    part = path.with_name(f"{SUMMARY}.{token_hex(4)}.part")
+    try:
+        with netCDF4.Dataset(part, "w", format="NETCDF4") as dataset:
+            _write(dataset, plan, columns)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
     return path
 
 
