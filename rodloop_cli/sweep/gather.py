@@ -93,7 +93,7 @@ def _global_attributes(plan: Plan) -> dict[str, Attribute]:
     now = f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
     return {
         "Conventions": CONVENTIONS,
-        "title": str(plan.sweep.base.values.get("title") or "Parameter sweep"),
+        "title": str(plan.sweep.base.values.get("title") or "").strip() or "Parameter sweep",
         "history": f"{now}: gathered from {len(plan.members)} members",
         "source": f"{SOURCE} sweep {__version__}, motion of an elastic rod loop in a soap film",
         "rodloop_content": "sweep",
