@@ -10,10 +10,10 @@ import numpy as np
 
 from rodloop_cli.errors import ConvergenceError, SingularSystem
 from rodloop_cli.march.predictor import Past, predict
-from rodloop_cli.march.stages import Instant, Linearisation, StageModes, solve_stages
+from rodloop_cli.march.stages import Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
-from rodloop_cli.physics.equations import NODAL, Fields, Motion
+from rodloop_cli.physics.equations import NODAL, Fields, Instant, Motion
 
 NEWTON_TARGET = 1e-10
 """Position error at which Newton stops: far below the scheme's own error, above round-off amplified by Δt⁻²."""

@@ -10,17 +10,17 @@ from rodloop_cli.march.bdf2 import FixedMarcher
 from rodloop_cli.march.loop import Marcher
 from rodloop_cli.march.predictor import Past
 from rodloop_cli.march.radau import RadauStepper
-from rodloop_cli.march.stages import Instant
 from rodloop_cli.march.state import State
 from rodloop_cli.numerics.control import Controller
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.physics.equations import BoxEquations
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import Instant
 from rodloop_cli.physics.rod import Mesh
 
 Arrays = dict[str, Array]
 
 STATE = ("unknowns", "rates", "position", "velocity", "acceleration", "force")
-PAST = ("nodes", "unknowns")
+PAST = ("nodes", "unknowns", "force")
 
 
 def pack(marcher: Marcher | FixedMarcher) -> Arrays:

@@ -12,7 +12,7 @@ import numpy as np
 
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.physics.equations import FX, FY
+from rodloop_cli.physics.equations import FORCE
 
 SHRINKING = 0.7
 """A Taylor term is used if it is smaller than this times the term before."""
@@ -21,40 +21,52 @@ SHRINKING = 0.7
 class Past(NamedTuple):
     """What the predictor remembers of the last step.
 
-    nodes: (s,);  unknowns: (s + 1, n, 6 + m) at its start and stages.
+    nodes: (s,);  unknowns: (s + 1, n, 6 + m) at its start and stages;  force: (2, s, n, m + 1) at its stages.
     """
 
     size: float
     nodes: Array
     unknowns: Array
+    force: Array
 
     @classmethod
     def of(cls, step: Step) -> "Past":
         """The memory of one step."""
-        return cls(step.size, step.nodes, np.concatenate([step.start.unknowns[None], step.unknowns]))
+        unknowns = np.concatenate([step.start.unknowns[None], step.unknowns])
+        return cls(step.size, step.nodes, unknowns, step.fields.force)
 
 
-def predict(state: State, last: Past | None, nodes: Array, size: float) -> Array:
-    """(s, n, 6 + m): guess of the stages at times ``nodes`` of a step of length ``size``."""
+class Guess(NamedTuple):
+    """Guess of the stages of a step: unknowns (s, n, 6 + m), force (2, s, n, m + 1)."""
+
+    unknowns: Array
+    force: Array
+
+
+def predict(state: State, last: Past | None, nodes: Array, size: float) -> Guess:
+    """The stages at times ``nodes`` of a step of length ``size``."""
     if last is None:
-        guess: Array = state.unknowns + (size * nodes)[:, None, None] * state.rates
-        return guess
+        unknowns = state.unknowns + (size * nodes)[:, None, None] * state.rates
+        return Guess(unknowns, np.repeat(state.force[:, None], len(nodes), axis=1))
     times = size / last.size * nodes
-    guess = _continued(np.concatenate([[0.0], last.nodes]), last.unknowns, times)
+    unknowns = _continued(np.concatenate([[0.0], last.nodes]), last.unknowns, times)
     # The forces at the start of the last step are not those of its stages: they are the constraint's, of lower order.
-    guess[..., FX : FY + 1] = _continued(last.nodes, last.unknowns[1:, :, FX : FY + 1], times)
-    return guess
+    force = _continued(last.nodes, last.force, times)
+    unknowns[:, 0, FORCE], unknowns[:, 1:, FORCE] = force[..., -1, -1].T, force[..., :-1, -1].transpose(1, 2, 0)
+    return Guess(unknowns, force)
 
 
 def _continued(nodes: Array, values: Array, times: Array) -> Array:
-    """Taylor polynomial about node 1 of the interpolant of ``values``, at ``times`` behind it."""
-    coefficients = _taylor_from_samples(tuple(nodes)) @ values.reshape(len(nodes), -1)
-    sizes = np.abs(coefficients).max(axis=1) * times[-1] ** np.arange(len(nodes))
+    """Taylor polynomial about node 1 of the interpolant of ``values`` (..., nodes, n, points), at ``times``."""
+    *parts, _, cells, points = values.shape
+    coefficients = _taylor_from_samples(tuple(nodes)) @ values.reshape(*parts, len(nodes), -1)
+    largest = np.abs(coefficients).max(axis=-1).reshape(-1, len(nodes)).max(axis=0)
+    sizes = largest * times[-1] ** np.arange(len(nodes))
     terms = min(2, len(nodes))
     while terms < len(nodes) and sizes[terms] < SHRINKING * sizes[terms - 1]:
         terms += 1
-    continued = np.vander(times, terms, increasing=True) @ coefficients[:terms]
-    return continued.reshape(len(times), *values.shape[1:])
+    continued = np.vander(times, terms, increasing=True) @ coefficients[..., :terms, :]
+    return continued.reshape(*parts, len(times), cells, points)
 
 
 @cache

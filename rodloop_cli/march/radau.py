@@ -11,19 +11,24 @@ import numpy as np
 
 from rodloop_cli.errors import SingularSystem
 from rodloop_cli.march.predictor import Past, predict
-from rodloop_cli.march.stages import Instant, Linearisation, StageModes, solve_stages
+from rodloop_cli.march.stages import Equations, Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.radau import RadauIIA, radau_iia
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Fields, Motion
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import NODAL, Fields, Instant, Motion
+from rodloop_cli.physics.whole_loop import LoopEquations
 
 REUSE_BELOW = 0.05
 """A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
 
+MOST_FULL = 64
+"""Gauss points up to which one full matrix is faster than boxes."""
+
 STARTING_ACCURACY = 1e-8
 STARTING_LENGTHS = (1.0, 10.0)
 
-ITERATION_ERROR = 0.03
+ITERATION_ERROR = 0.01
 """Newton's share of the position error allowed in a step."""
 
 
@@ -36,6 +41,8 @@ class RadauStepper:
         self._modes = _modes(stages)
         self.linearisation: Linearisation | None = None
         self.contraction = 1.0
+        self._boxes: BoxEquations | None = None
+        self._solved: Equations
 
     @property
     def reusable_size(self) -> float | None:
@@ -46,18 +53,23 @@ class RadauStepper:
 
     def step(self, state: State, last: Past | None, size: float, allowance: float) -> Step | None:
         """A step of length ``size`` whose ``error`` is measured against ``allowance``; None if Newton fails."""
-        method, equations = self.method, state.equations
+        method, equations = self.method, self._form(state.equations)
         motion = _motion(method, state, size)
         guess = predict(state, last, method.nodes, size)
 
         def renew(fields: Fields, trusted: bool) -> Linearisation:
             self.work.factorizations += 1
             instant = Instant.of_stage(fields, method.stages // 2, None if trusted else state.force)
-            return self.linearised(equations, size, instant)
+            return self.linearised(state.equations, size, instant)
 
         try:
             solution, self.linearisation = solve_stages(
-                equations, motion, guess, self._kept(equations, size), renew, ITERATION_ERROR * allowance
+                equations,
+                motion,
+                guess,
+                self._kept(equations, size),
+                renew,
+                ITERATION_ERROR * allowance,
             )
         except SingularSystem:
             solution, self.linearisation = None, None
@@ -68,20 +80,28 @@ class RadauStepper:
         self.contraction = solution.contraction
         gained = solution.unknowns - state.unknowns
         rates = (motion.rates @ gained.reshape(method.stages, -1)).reshape(gained.shape)
-        error = self._error(state, solution.fields, size) / allowance
+        error = self._error(equations, state, solution.fields, size) / allowance
         return Step(state, size, method.nodes, solution.unknowns, rates, solution.fields, solution.iterations, error)
 
     def linearised(self, equations: BoxEquations, size: float, instant: Instant) -> Linearisation:
         """The factored systems of a step of this length. Raises SingularSystem."""
-        return Linearisation(equations, self._modes, size, instant)
+        return Linearisation(self._form(equations), self._modes, size, instant)
 
-    def _kept(self, equations: BoxEquations, size: float) -> Linearisation | None:
+    def _form(self, equations: BoxEquations) -> Equations:
+        """The equations in the form that is solved faster."""
+        if self._boxes is not equations:
+            self._boxes = self._solved = equations
+            if equations.mesh.cells * equations.rule.m <= MOST_FULL:
+                self._solved = LoopEquations(equations.mesh, equations.rule, equations.load)
+        return self._solved
+
+    def _kept(self, equations: Equations, size: float) -> Linearisation | None:
         kept = self.linearisation
         if kept is None or kept.equations is not equations or size != self.reusable_size:
             return None
         return kept
 
-    def _error(self, state: State, fields: Fields, size: float) -> float:
+    def _error(self, equations: Equations, state: State, fields: Fields, size: float) -> float:
         """The embedded estimate, in positions.
 
         The embedded formula needs the acceleration a0 at the start but not the force: the constraint absorbs it. What
@@ -94,9 +114,8 @@ class RadauStepper:
         gained = fields.velocity[..., :-1] - state.velocity[:, None, :, :-1]
         drift = np.einsum("k,ckni->cni", weights / size, moved) + state.velocity[..., :-1]
         push = rate * drift + np.einsum("k,ckni->cni", weights / size, gained) + state.acceleration[..., :-1]
-        equations = state.equations
         right_hand_side = equations.load_response(
-            fields.cosine[-1], fields.sine[-1], -equations.mesh.density[:, None] * push
+            fields.cosine[-1], fields.sine[-1], -state.equations.mesh.density[:, None] * push
         )
         correction = self.linearisation.systems.solve_real(right_hand_side)
         return float(np.abs(equations.displacement(fields.cosine[-1], fields.sine[-1], correction)).max())

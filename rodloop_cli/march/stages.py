@@ -12,12 +12,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rodloop_cli.errors import SingularSystem
-from rodloop_cli.numerics.condensed import CondensedSystems
+from rodloop_cli.march.predictor import Guess
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Fields, Motion, X, Y
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import Fields, Instant, Motion
+from rodloop_cli.physics.whole_loop import LoopEquations
 
 Complex = NDArray[np.complex128]
+Equations = BoxEquations | LoopEquations
 
 SLOW = 0.3
 """Contraction above which the linearisation is renewed in the middle of an iteration."""
@@ -35,6 +37,9 @@ ROUND_OFF = 1e-11
 STALLED = 0.5
 """A correction that is smaller than ROUND_OFF and no longer contracts is round-off, which a shorter step amplifies."""
 
+LEAST_CONTRACTION = 0.03
+"""Assumed of the corrections that follow: the first one contracts better, as most of a guess's error is smooth."""
+
 CERTAIN = 0.05
 """A correction this much smaller than the target ends the iteration whatever the contraction."""
 
@@ -49,8 +54,9 @@ class StageModes:
 
 
 class Solution(NamedTuple):
-    """Stage values that solve the equations: unknowns (s, n, 6 + m), the fields, the iterations and their
-    contraction.
+    """Stage values that solve the equations.
+
+    unknowns: (s, n, 6 + m), those of the boxes;  iterations, contraction: of Newton.
     """
 
     unknowns: Array
@@ -62,22 +68,12 @@ class Solution(NamedTuple):
 class Linearisation:
     """The factored systems of one instant and one matrix of rates."""
 
-    def __init__(self, equations: BoxEquations, modes: StageModes, step: float, instant: "Instant") -> None:
+    def __init__(self, equations: Equations, modes: StageModes, step: float, instant: Instant) -> None:
         self.equations, self.step, self.instant, self._modes = equations, step, instant, modes
-        parts = equations.linearise(*instant)
-        rate = (modes.eigenvalues / step)[:, None, None, None]
-        responses = parts[0] + rate**2 * parts[1]
-        if len(parts) > 2:
-            responses += rate * parts[2]
-        if not np.isfinite(responses.view(float)).all():
-            raise SingularSystem("the linearised system is not finite")
-        try:
-            self.systems = CondensedSystems(responses, NODAL)
-        except np.linalg.LinAlgError as error:
-            raise SingularSystem("a cell's equations are singular") from error
+        self.systems = equations.factored(modes.eigenvalues / step, *instant)
 
     def correction(self, residual: Array) -> Array:
-        """Newton's correction (s, n, 6 + m) of the stages."""
+        """Newton's correction of the stages, in the shape of their ``residual`` (s, ...)."""
         stages = len(residual)
         coordinates = self._modes.to_modes @ residual.reshape(stages, -1)
         solved = self.systems.solve(coordinates.reshape(-1, *residual.shape[1:]))
@@ -85,25 +81,10 @@ class Linearisation:
         return correction.reshape(residual.shape)
 
 
-class Instant(NamedTuple):
-    """Where the equations are linearised: cosine, sine (n, m); force, velocity (2, n, m)."""
-
-    cosine: Array
-    sine: Array
-    force: Array
-    velocity: Array
-
-    @classmethod
-    def of_stage(cls, fields: Fields, stage: int, force: Array | None = None) -> "Instant":
-        """The instant of one stage; ``force`` (2, n, m + 1) where the stage's own is not to be trusted yet."""
-        chosen = fields.force[:, stage] if force is None else force
-        return cls(fields.cosine[stage], fields.sine[stage], chosen[..., :-1], fields.velocity[:, stage, :, :-1])
-
-
 def solve_stages(
-    equations: BoxEquations,
+    equations: Equations,
     motion: Motion,
-    guess: Array,
+    guess: Guess,
     linearisation: Linearisation | None,
     renew: Callable[[Fields, bool], Linearisation],
     target: float,
@@ -113,23 +94,26 @@ def solve_stages(
     ``renew(fields, trusted)`` makes a linearisation at the current fields, whose forces are trusted only after an
     iteration: those of a guess contain its accelerations, which amplify its error by Δt⁻².
     """
-    unknowns, fields = guess, equations.fields(guess, motion)
+    unknowns = equations.compressed(guess.unknowns)
+    fields = equations.guessed(unknowns, guess.force, motion)
     linearisation = linearisation or renew(fields, False)
     renewals = 0
     last, contraction = np.inf, 0.0
     for iteration in range(1, MAX_ITERATIONS + 1):
-        correction = linearisation.correction(equations.residual(unknowns, fields))
+        instant = linearisation.instant
+        integrated = equations.integrated(unknowns, fields, motion, instant)
+        correction = linearisation.correction(equations.residual(unknowns, integrated))
         unknowns = unknowns + correction
-        fields = equations.fields(unknowns, motion)
-        size = position_size(correction, equations.mesh.lengths)
+        fields = equations.corrected(integrated, unknowns, correction, motion, instant)
+        size = float(np.abs(fields.position - integrated.position).max())
         if not np.isfinite(size):
             break
-        if size < CERTAIN * target:
-            return Solution(unknowns, fields, iteration, contraction), linearisation
         if iteration > 1:
             contraction = size / last
-            if _converged(size, contraction, target):
-                return Solution(unknowns, fields, iteration, contraction), linearisation
+        if size < CERTAIN * target or (iteration > 1 and _converged(size, contraction, target)):
+            fields = equations.finished(integrated, fields, correction, motion, instant)
+            return Solution(equations.expanded(unknowns, fields), fields, iteration, contraction), linearisation
+        if iteration > 1:
             too_slow = contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration)
             if (too_slow or contraction > SLOW) and contraction < DIVERGING and renewals < MOST_RENEWALS:
                 linearisation, renewals = renew(fields, True), renewals + 1
@@ -139,18 +123,10 @@ def solve_stages(
     return None, linearisation
 
 
-def position_size(correction: Array, lengths: Array) -> float:
-    """How far a correction (..., n, 6 + m) moves the rod: nodes directly, points inside a cell (n,) long by its
-    turning.
-    """
-    nodes = correction[..., X : Y + 1]
-    angles = np.abs(correction[..., NODAL:]).max(axis=-1)
-    return max(float(np.abs(nodes).max()), float((angles * lengths).max()))
-
-
 def _converged(size: float, contraction: float, target: float) -> bool:
     if contraction > STALLED and size < ROUND_OFF:
         return True
+    contraction = max(contraction, LEAST_CONTRACTION)
     return contraction < 1 and size * contraction / (1 - contraction) < target
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.physics.equations import BoxEquations, Fields
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import Fields
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 SAFETY = 0.9
-LARGEST_GROWTH = 4.0
+LARGEST_GROWTH = 8.0
 LARGEST_CUT = 0.2
 CUT_AFTER_FAILURE = 0.35
 """After a Newton failure: halving often fails again, and a third of the step is still longer than the error would

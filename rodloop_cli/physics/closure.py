@@ -4,7 +4,8 @@ centre.
 
 import numpy as np
 
-from rodloop_cli.physics.equations import NODAL, THETA, BoxEquations, X, Y
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import NODAL, THETA, X, Y
 from rodloop_cli.physics.rod import Array
 
 

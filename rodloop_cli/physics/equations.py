@@ -1,4 +1,4 @@
-"""The balance laws of the loop, Eqs. (10)-(13), on Gauss boxes: residual and exact linearisation.
+"""The balance laws of the loop, Eqs. (10)-(13), and their integrals along a mesh.
 
     x' = cos θ,  y' = sin θ                                                                         (10)
     Fx' =  p sin θ + ζ⊥[(γ cos²θ + sin²θ) u + (γ-1) sinθ cosθ v] + ρ a_x                             (11)
@@ -6,17 +6,13 @@
     M'  = Fx sin θ - Fy cos θ + ρ ι θ_tt,   θ' = M/b                                                (13), and (1) for ι
 
 Prime is d/ds; (u, v) velocity, (a_x, a_y) acceleration; b = B/B1, ρ = ρ/ρ1, ι the rotary inertia I/(A R²), zero in
-the paper. In a cell the only free values are the angles Θ at the m Gauss points and the six nodal values at its left
-end: position, force and moment follow by integration. What is left to solve: Θ must be the integral of M/b, and each
-cell must end where the next begins (14).
-
-Unknowns are stored cell by cell, (..., n, 6 + m): x, y, θ, M, Fx, Fy at the left node, then Θ_1 … Θ_m. θ grows by 2π
-round the loop.
+the paper. Once the angles at the Gauss points are known, position, force and moment follow by integration; `boxes`
+does it cell by cell, `whole_loop` round the loop.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from math import pi
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +20,11 @@ from numpy.typing import NDArray
 from rodloop_cli.numerics.gauss import GaussRule
 from rodloop_cli.physics.rod import Array, Mesh
 
+Complex = NDArray[np.complex128]
+
 X, Y, THETA, MOMENT, FX, FY = range(6)
 NODAL = 6
+POSITION, FORCE = slice(X, Y + 1), slice(FX, FY + 1)
 
 
 @dataclass(frozen=True)
@@ -55,12 +54,11 @@ class Motion(NamedTuple):
 class Fields(NamedTuple):
     """What follows from the unknowns at k stages, at the Gauss points and, last, at the right end of each cell.
 
-    cosine, sine: (k, n, m);  position, velocity, acceleration, force: (2, k, n, m + 1);  moment, theta: (k, n, m + 1).
-    Velocity and acceleration are empty in statics.
+    tangent: (2, k, n, m) at the Gauss points alone;  position, velocity, acceleration, force: (2, k, n, m + 1);
+    moment, theta: (k, n, m + 1).  Velocity and acceleration are empty in statics.
     """
 
-    cosine: Array
-    sine: Array
+    tangent: Array
     position: Array
     velocity: Array
     acceleration: Array
@@ -68,168 +66,114 @@ class Fields(NamedTuple):
     moment: Array
     theta: Array
 
+    @property
+    def cosine(self) -> Array:
+        """(k, n, m)."""
+        cosine: Array = self.tangent[0]
+        return cosine
 
-_AT_REST = np.zeros(0)
+    @property
+    def sine(self) -> Array:
+        """(k, n, m)."""
+        sine: Array = self.tangent[1]
+        return sine
 
 
-class BoxEquations:
-    """Eqs. (10)-(13) on one mesh under one load."""
+class Instant(NamedTuple):
+    """Where the equations are linearised: cosine, sine (n, m); force, velocity (2, n, m)."""
+
+    cosine: Array
+    sine: Array
+    force: Array
+    velocity: Array
+
+    @classmethod
+    def of_stage(cls, fields: Fields, stage: int, force: Array | None = None) -> Self:
+        """The instant of one stage; ``force`` (2, n, m + 1) where the stage's own is not to be trusted yet."""
+        chosen = fields.force[:, stage] if force is None else force
+        cosine, sine = fields.tangent[:, stage]
+        return cls(cosine, sine, chosen[..., :-1], fields.velocity[:, stage, :, :-1])
+
+
+NOTHING = np.zeros(0)
+
+
+class Balance(ABC):
+    """Eqs. (10)-(13) integrated along a mesh, from start values to the Gauss points and the right ends of the cells.
+
+    What is unknown, and what is left to solve, the kinds of equations below say.
+    """
 
     def __init__(self, mesh: Mesh, rule: GaussRule, load: Load) -> None:
         self.mesh, self.rule, self.load = mesh, rule, load
-        self._integrate = rule.to_points_and_end
-        self._integrate_rows = np.ascontiguousarray(self._integrate.T)
-        self._length = mesh.lengths[:, None]
-        self._length_by_stiffness = (mesh.lengths / mesh.stiffness)[:, None]
         self._density = mesh.density[:, None]
-        self._turn = np.zeros((mesh.cells, NODAL))
-        self._turn[-1, THETA] = 2 * pi
+        self._compliance = 1 / mesh.stiffness[:, None]
+
+    @abstractmethod
+    def angles(self, unknowns: Array) -> Array:
+        """(k, n, m): the angles at the Gauss points."""
+
+    @abstractmethod
+    def _start(self, unknowns: Array, components: slice | int) -> Array:
+        """The values (components, k, cells, 1) from which the integrals start."""
+
+    @abstractmethod
+    def _integral(self, values: Array) -> Array:
+        """(..., n, m + 1): integrals of ``values`` (..., n, m) up to the Gauss points and the right ends."""
 
     def fields(self, unknowns: Array, motion: Motion | None) -> Fields:
-        """Integrate (10)-(13) through every cell from ``unknowns`` (k, n, 6 + m); ``motion=None`` is statics."""
-        direction, position = self.shape(unknowns)
-        cosine, sine = direction
-        velocity, acceleration = (_AT_REST, _AT_REST) if motion is None else _kinematics(position, motion)
-        density = self._force_density(direction, velocity, acceleration)
-        force = self._from_node(unknowns, slice(FX, FY + 1), density * self._length)
-        shear = force[0, ..., :-1] * sine
-        shear -= force[1, ..., :-1] * cosine
+        """Integrate (10)-(13) from ``unknowns`` of k instants; ``motion=None`` is statics."""
+        tangent, position = self.shape(unknowns)
+        velocity, acceleration = (NOTHING, NOTHING) if motion is None else kinematics(position, motion)
+        force = self._integral(self._force_density(tangent, velocity, acceleration))
+        force += self._start(unknowns, FORCE)
+        shear = force[0, ..., :-1] * tangent[1]
+        shear -= force[1, ..., :-1] * tangent[0]
+        moment, theta = self._turning(unknowns, shear, motion)
+        return Fields(tangent, position, velocity, acceleration, force, moment, theta)
+
+    def _turning(self, unknowns: Array, shear: Array, motion: Motion | None) -> tuple[Array, Array]:
+        """Moment and angle (k, n, m + 1) by (13), from the shear Fx sin θ - Fy cos θ (k, n, m)."""
         if self.load.rotary_inertia and motion is not None:
-            shear += self._density * self.load.rotary_inertia * _spin_rate(unknowns[..., NODAL:], motion)
-        shear *= self._length
-        moment = unknowns[..., MOMENT, None] + shear @ self._integrate
-        turning = (moment[..., :-1] * self._length_by_stiffness) @ self._integrate
-        turning += unknowns[..., THETA, None]
-        return Fields(cosine, sine, position, velocity, acceleration, force, moment, turning)
+            shear = shear + self._density * self.load.rotary_inertia * _spin_rate(self.angles(unknowns), motion)
+        moment = self._integral(shear)
+        moment += self._start(unknowns, MOMENT)
+        theta = self._integral(moment[..., :-1] * self._compliance)
+        theta += self._start(unknowns, THETA)
+        return moment, theta
 
     def shape(self, unknowns: Array) -> tuple[Array, Array]:
         """Tangent (2, k, n, m) at the Gauss points; position (2, k, n, m + 1) there and at the right ends, by (10)."""
-        theta = unknowns[..., NODAL:]
-        direction = np.empty((2, *theta.shape))
-        np.cos(theta, out=direction[0])
-        np.sin(theta, out=direction[1])
-        return direction, self._from_node(unknowns, slice(X, Y + 1), direction * self._length)
+        theta = self.angles(unknowns)
+        tangent = np.empty((2, *theta.shape))
+        np.cos(theta, out=tangent[0])
+        np.sin(theta, out=tangent[1])
+        position = self._integral(tangent)
+        position += self._start(unknowns, POSITION)
+        return tangent, position
 
-    def residual(self, unknowns: Array, fields: Fields) -> Array:
-        """(k, n, 6 + m): by how much each cell misses the next node, then the integral of M/b the angle."""
-        out = np.empty_like(unknowns)
-        out[..., X], out[..., Y] = fields.position[..., -1]
-        out[..., FX], out[..., FY] = fields.force[..., -1]
-        out[..., MOMENT] = fields.moment[..., -1]
-        out[..., THETA] = fields.theta[..., -1]
-        out[..., NODAL:] = fields.theta[..., :-1]
-        out[..., NODAL:] -= unknowns[..., NODAL:]
-        out[..., :-1, :NODAL] -= unknowns[..., 1:, :NODAL]
-        out[..., -1, :NODAL] -= unknowns[..., 0, :NODAL]
-        out[..., :NODAL] -= self._turn
-        return out
-
-    def _from_node(self, unknowns: Array, components: slice, increments: Array) -> Array:
-        """(2, k, n, m + 1): a vector at the left nodes plus the integral of ``increments``."""
-        out: Array = increments @ self._integrate
-        start = unknowns[..., components]
-        out += start.transpose(start.ndim - 1, *range(start.ndim - 1))[..., None]
-        return out
-
-    def _force_density(self, direction: Array, velocity: Array, acceleration: Array) -> Array:
+    def _force_density(self, tangent: Array, velocity: Array, acceleration: Array) -> Array:
         """(2, k, n, m): F' by (11) and (12)."""
-        density = np.empty_like(direction)
-        np.multiply(direction[1], self.load.p, out=density[0])
-        np.multiply(direction[0], -self.load.p, out=density[1])
+        density = self._pressure(tangent)
         if acceleration.size:
             density += self._density * acceleration[..., :-1]
         if velocity.size and self.load.zeta_perp:
-            density += self._drag(direction, velocity[..., :-1])
+            density += self._drag(tangent, velocity[..., :-1])
         return density
 
-    def _drag(self, direction: Array, velocity: Array) -> Array:
+    def _pressure(self, tangent: Array) -> Array:
+        """p times minus the normal."""
+        pressure = np.empty_like(tangent)
+        np.multiply(tangent[1], self.load.p, out=pressure[0])
+        np.multiply(tangent[0], -self.load.p, out=pressure[1])
+        return pressure
+
+    def _drag(self, tangent: Array, velocity: Array) -> Array:
         """ζ⊥ (u + (γ - 1)(u·t) t), which is (11) and (12) in vector form."""
-        along = (direction * velocity).sum(axis=0)
+        along = (tangent * velocity).sum(axis=0)
         along *= self.load.gamma - 1
-        drag: Array = (velocity + along * direction) * self.load.zeta_perp
+        drag: Array = (velocity + along * tangent) * self.load.zeta_perp
         return drag
-
-    def displacement(self, cosine: Array, sine: Array, correction: Array) -> Array:
-        """(2, n, m + 1): how far a small ``correction`` (n, 6 + m) of the unknowns moves the Gauss points and right
-        ends.
-        """
-        turned = np.stack([-sine, cosine]) * (correction[:, NODAL:] * self._length)
-        moved: Array = turned @ self._integrate + correction[:, X : Y + 1].T[..., None]
-        return moved
-
-    def linearise(self, cosine: Array, sine: Array, force: Array, velocity: Array) -> Array:
-        """(3 or 2, n, 6 + m, 6 + m): parts L0, L1[, L2] of the cells' response L0 + λ² L1 + λ L2 to their own unknowns.
-
-        λ stands for the time derivative; L2 is there only with drag. Rows: the six values at the cell's right end,
-        then the integral of M/b at the Gauss points. Arguments at one instant: cosine, sine (n, m); force, velocity
-        (2, n, m).
-        """
-        parts, (n, m) = 3 if self.load.zeta_perp else 2, cosine.shape
-        size = NODAL + m
-        position = self._position_response(cosine, sine, size)
-        density = np.zeros((parts, 2, n, m, size))
-        angles = np.arange(m), NODAL + np.arange(m)
-        density[0, 0][:, *angles] = self.load.p * cosine
-        density[0, 1][:, *angles] = self.load.p * sine
-        np.multiply(position[:, :, :-1], self._density[..., None], out=density[1])
-        if parts == 3:
-            self._add_drag_response(density, position, cosine, sine, velocity)
-        density *= self._length[..., None]
-        force_response = self._integrate_rows @ density
-        force_response[0, 0, ..., FX] += 1
-        force_response[0, 1, ..., FY] += 1
-        shear = sine[..., None] * force_response[:, 0, :, :-1]
-        shear -= cosine[..., None] * force_response[:, 1, :, :-1]
-        shear[0][:, *angles] += force[0] * cosine + force[1] * sine
-        if self.load.rotary_inertia:
-            shear[1][:, *angles] += self._density * self.load.rotary_inertia
-        shear *= self._length[..., None]
-        moment = self._integrate_rows @ shear
-        moment[0, ..., MOMENT] += 1
-        turning = self._integrate_rows @ (moment[:, :, :-1] * self._length_by_stiffness[..., None])
-        turning[0, ..., THETA] += 1
-        response = np.zeros((parts, n, size, size))
-        response[0, :, X : Y + 1] = position[:, :, -1].swapaxes(0, 1)
-        response[:, :, THETA], response[:, :, MOMENT] = turning[:, :, -1], moment[:, :, -1]
-        response[:, :, FX : FY + 1] = force_response[:, :, :, -1].swapaxes(1, 2)
-        response[:, :, NODAL:] = turning[:, :, :-1]
-        return response
-
-    def _position_response(self, cosine: Array, sine: Array, size: int) -> Array:
-        """(2, n, m + 1, size): change of position at the Gauss points and the right end."""
-        n, m = cosine.shape
-        response = np.zeros((2, n, m + 1, size))
-        response[0, ..., X] = response[1, ..., Y] = 1
-        response[0, ..., NODAL:] = self._integrate_rows * (-sine * self._length)[:, None, :]
-        response[1, ..., NODAL:] = self._integrate_rows * (cosine * self._length)[:, None, :]
-        return response
-
-    def _add_drag_response(
-        self, density: Array, position: Array, cosine: Array, sine: Array, velocity: Array
-    ) -> None:
-        """Derivative of `_drag` by position (with λ, part 2) and by angle (part 0)."""
-        zeta, excess = self.load.zeta_perp, self.load.zeta_perp * (self.load.gamma - 1)
-        c, s = cosine[..., None], sine[..., None]
-        dx, dy = position[:, :, :-1]
-        along = excess * (c * dx + s * dy)
-        density[2, 0] = zeta * dx + along * c
-        density[2, 1] = zeta * dy + along * s
-        u, v = velocity
-        angles = np.arange(cosine.shape[1]), NODAL + np.arange(cosine.shape[1])
-        cross, square = 2 * sine * cosine, cosine**2 - sine**2
-        density[0, 0][:, *angles] += excess * (square * v - cross * u)
-        density[0, 1][:, *angles] += excess * (square * u + cross * v)
-
-    def load_response(self, cosine: Array, sine: Array, density: Array) -> Array:
-        """(n, 6 + m): the cells' response to an extra force density (2, n, m), in the rows of `residual`."""
-        force = (density * self._length) @ self._integrate
-        shear = (sine * force[0, :, :-1] - cosine * force[1, :, :-1]) * self._length
-        moment = shear @ self._integrate
-        turning = (moment[:, :-1] * self._length_by_stiffness) @ self._integrate
-        out = np.zeros((len(turning), NODAL + cosine.shape[1]))
-        out[:, FX : FY + 1] = force[..., -1].T
-        out[:, MOMENT], out[:, THETA], out[:, NODAL:] = moment[:, -1], turning[:, -1], turning[:, :-1]
-        return out
 
 
 def _spin_rate(theta: Array, motion: Motion) -> Array:
@@ -242,7 +186,7 @@ def _spin_rate(theta: Array, motion: Motion) -> Array:
     return rate
 
 
-def _kinematics(position: Array, motion: Motion) -> tuple[Array, Array]:
+def kinematics(position: Array, motion: Motion) -> tuple[Array, Array]:
     """Velocity and acceleration (2, k, n, m + 1)."""
     shape = (2, len(motion.rates), -1)
     velocity = (motion.rates @ position.reshape(shape)).reshape(position.shape)
@@ -250,6 +194,3 @@ def _kinematics(position: Array, motion: Motion) -> tuple[Array, Array]:
     acceleration = (motion.rates @ velocity.reshape(shape)).reshape(position.shape)
     acceleration += motion.acceleration_past
     return velocity, acceleration
-
-
-BoolArray = NDArray[np.bool_]

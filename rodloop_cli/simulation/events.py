@@ -12,11 +12,11 @@ from rodloop_cli.march.dense import shapes_at
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.roots import bracketed_root
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.clearance import crossing_indicator
 from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.crossing import crosses_itself
 from rodloop_cli.physics.energies import Quadrature
-from rodloop_cli.physics.equations import BoxEquations
 from rodloop_cli.physics.rod import LENGTH
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.statics import relax

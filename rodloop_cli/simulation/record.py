@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from rodloop_cli.march.dense import Shapes, shapes_at
 from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.crossing import crosses_itself
 from rodloop_cli.physics.energies import Quadrature
-from rodloop_cli.physics.equations import BoxEquations, Load
+from rodloop_cli.physics.equations import Load
 from rodloop_cli.physics.lobes import count_lobes
 from rodloop_cli.physics.rod import LENGTH, Rod
 from rodloop_cli.physics.sampling import Sampler
@@ -118,4 +119,3 @@ class Recorder:
             "velocity_x": u,
             "velocity_y": v,
         }
-

@@ -108,5 +108,3 @@ def packed(run: Run, rows: int) -> Arrays:
         "summary": np.array([summary.extrema.sign, crossing, summary.seconds]),
         "rows": np.array([float(rows)]),
     }
-
-

@@ -11,7 +11,8 @@ from rodloop_cli.march.radau import started
 from rodloop_cli.march.refine import SHARE, unresolved
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import GaussRule, gauss_rule, lagrange_derivative
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Load
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import NODAL, Load
 from rodloop_cli.physics.rod import Mesh, Rod, Segment, cells_by_length
 from rodloop_cli.physics.shapes import Wave, circle, displacement, perturbed, random_waves
 from rodloop_cli.statics import as_shape, laid_on, unloaded
@@ -22,7 +23,10 @@ STARTING_TIME = 1e-4
 LEAST_SCALE = 1e-3
 """Size of the motion of a loop that is neither disturbed nor pushed out of shape, to which its tolerance refers."""
 
-LEAST_CELLS = 4
+LEAST_POINTS, POINTS_PER_WAVE = 24, 6
+MOST_LARGE = 4
+"""Segments up to which cells are large: a cell never spans two, and small ones need few points."""
+
 MOST_START_CELLS = 2048
 
 KINK_ERROR = 0.003
@@ -81,11 +85,13 @@ def waves_of(case: Case) -> tuple[Wave, ...]:
 
 
 def points_per_cell(case: Case) -> int:
-    """Gauss points in a cell: the paper's box has one, otherwise the more the tighter the tolerance."""
+    """Gauss points in a cell: the paper's box has one; few large cells need the fewest points in all."""
     if case.scheme == "bdf2":
         return 1
     assert case.tol is not None
-    return 6 if case.tol > 3e-5 else 8 if case.tol > 3e-7 else 10
+    if case.N is not None or len(case.segments) > MOST_LARGE:
+        return 6 if case.tol > 3e-5 else 8 if case.tol > 3e-7 else 10
+    return 16 if case.tol > 1e-5 else 20
 
 
 def growth_time(load: Load, rod: Rod) -> float:
@@ -109,7 +115,7 @@ def _resolved(case: Case, rod: Rod, load: Load, rule: GaussRule, waves: tuple[Wa
     assert case.tol is not None
     moving = [abs(w.amplitude) for w in waves if w.amplitude]
     allowed = max(ROUND_OFF, SHARE * case.tol * min(1.0, max(moving, default=1.0)))
-    mesh = Mesh.on(rod, tuple(_first_cells(s, load, len(rod.segments)) for s in rod.segments))
+    mesh = Mesh.on(rod, tuple(_first_cells(s, load, len(rod.segments), rule.m) for s in rod.segments))
     while True:
         unknowns = _shape_on(mesh, rod, rule, waves)
         equations = BoxEquations(mesh, rule, load)
@@ -134,10 +140,11 @@ def _kinked(equations: BoxEquations, unknowns: np.ndarray) -> np.ndarray:
     return KINK_ERROR * kinked
 
 
-def _first_cells(segment: Segment, load: Load, segments: int) -> int:
-    """About one cell to a wave of the mode that buckles fastest."""
+def _first_cells(segment: Segment, load: Load, segments: int, points: int) -> int:
+    """As many points to a wave of the mode that buckles fastest as POINTS_PER_WAVE."""
     waves = sqrt((1 + abs(load.p) / segment.stiffness) / 2)
-    return max(1 if segments > 1 else 2, ceil(segment.fraction * max(LEAST_CELLS, waves)))
+    cells = segment.fraction * max(LEAST_POINTS, POINTS_PER_WAVE * waves) / points
+    return max(1 if segments > 1 else 2, ceil(cells))
 
 
 def _shape_on(mesh: Mesh, rod: Rod, rule: GaussRule, waves: tuple[Wave, ...]) -> np.ndarray:

@@ -6,9 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from rodloop_cli.numerics.gauss import GaussRule, gauss_rule
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.closure import Closure, left_ends, turned
 from rodloop_cli.physics.energies import Quadrature
-from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, THETA, BoxEquations, Fields, Load, X, Y
+from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, THETA, Fields, Load, X, Y
 from rodloop_cli.physics.rod import Array, Mesh, Rod, cells_by_length
 from rodloop_cli.physics.shapes import circle
 from rodloop_cli.statics.relaxation import laid_on, unloaded

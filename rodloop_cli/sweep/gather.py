@@ -26,10 +26,12 @@ _WORD = str.maketrans({".": "_", "-": "_"})
 
 
 def gather(plan: Plan, folder: Path) -> Path:
-    """Write sweep.nc, whole or not at all; members without a row are marked as not run."""
+    """Write sweep.nc, whole or not at all; members without a row are marked as not run.
+
+    Sweeps that share the folder may end at the same moment: each writes a file of its own, and the last one stays.
+    """
     columns = _filled(plan, Manifest(folder).fresh())
     path = folder / SUMMARY
-    # Two sweeps that share a folder end together: each writes a file of its own.
     part = path.with_name(f"{SUMMARY}.{token_hex(4)}.part")
     try:
         with netCDF4.Dataset(part, "w", format="NETCDF4") as dataset:

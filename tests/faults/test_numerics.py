@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from rodloop_cli import Case, simulate
-from rodloop_cli.march.stages import position_size
-from rodloop_cli.physics.equations import NODAL
 from rodloop_cli.simulation import Run
 from scripts.stress.random_cases import one
 from scripts.stress.trial import attempt
@@ -45,12 +43,6 @@ def test_a_perturbed_loop_with_kinks_runs_to_a_tight_tolerance(ratio):
     trial, _ = attempt(case | {"perturbation": [{"mode": 3, "amplitude": 0.03, "phase": 0.5}]}, 20)
     assert trial.kind == "end"
     assert trial.residual < 0.02
-
-
-def test_a_turn_inside_a_short_cell_moves_the_rod_little():
-    correction = np.zeros((1, 2, NODAL + 3))
-    correction[0, 0, NODAL:] = 0.1
-    assert position_size(correction, np.array([1e-3, 1.0])) == pytest.approx(1e-4)
 
 
 @pytest.mark.parametrize("seed", range(6))

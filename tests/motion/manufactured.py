@@ -17,9 +17,11 @@ import numpy as np
 
 from rodloop_cli.march.state import State
 from rodloop_cli.numerics.gauss import gauss_rule
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.closure import Closure
-from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, THETA, BoxEquations, Load
+from rodloop_cli.physics.equations import FORCE, MOMENT, NODAL, THETA, Load
 from rodloop_cli.physics.rod import Mesh, Rod, Segment
+from rodloop_cli.physics.whole_loop import LoopEquations
 
 STIFFNESS = (1.0, 3.0, 1.0, 3.0)
 ROD = Rod(tuple(Segment(0.25, b, rho) for b, rho in zip(STIFFNESS, (1.0, 2.0, 1.0, 2.0), strict=True)))
@@ -95,20 +97,32 @@ class Exact:
         return inside + (np.cumsum(inside[..., -1], axis=-1) - inside[..., -1])[..., None] + (x + 1j * y)
 
 
-class Forced(BoxEquations):
-    """The balance laws with f and g; `at` must be told the times of the stages before every step."""
+class Forced:
+    """The balance laws with f and g, whichever way they are solved."""
 
-    def at(self, t):
-        self._f, self._g = sources(self.mesh, self.rule.points, t)
+    times = np.zeros(1)
+    """(k,): of the stages; to be set on this class before every step."""
+    _made_for = None
 
-    def fields(self, unknowns, motion):
-        fields = super().fields(unknowns, motion)
-        to_ends, lengths = self.rule.to_points_and_end, self.mesh.lengths[:, None]
-        extra = as_pair(self._f * lengths @ to_ends)
-        shear = extra[0, ..., :-1] * fields.sine - extra[1, ..., :-1] * fields.cosine
-        bending = (shear + self._g) * lengths @ to_ends
-        turning = bending[..., :-1] * lengths / self.mesh.stiffness[:, None] @ to_ends
-        return fields._replace(force=fields.force + extra, moment=fields.moment + bending, theta=fields.theta + turning)
+    def _force_density(self, tangent, velocity, acceleration):
+        return super()._force_density(tangent, velocity, acceleration) + as_pair(self._sources()[0])
+
+    def _turning(self, unknowns, shear, motion):
+        is_change = motion.velocity_past.size == 0  # of fields, to which what does not depend on them adds nothing
+        return super()._turning(unknowns, shear if is_change else shear + self._sources()[1], motion)
+
+    def _sources(self):
+        if self._made_for is not Forced.times:
+            self._made_for, self._made = Forced.times, sources(self.mesh, self.rule.points, Forced.times)
+        return self._made
+
+
+class ForcedBoxes(Forced, BoxEquations):
+    pass
+
+
+class ForcedLoop(Forced, LoopEquations):
+    pass
 
 
 def sources(mesh, points, t):
@@ -128,14 +142,14 @@ def state_at(time, cells, m):
     do it.
     """
     mesh, rule, t = Mesh.on(ROD, (cells,) * len(ROD.segments)), gauss_rule(m), np.array([time])
-    equations, closure = Forced(mesh, rule, LOAD), Closure(BoxEquations(mesh, rule, LOAD))
+    equations, closure = ForcedBoxes(mesh, rule, LOAD), Closure(BoxEquations(mesh, rule, LOAD))
     places = np.append(rule.points, 1.0)
     exact, nodes = Exact(mesh, places, t), mesh.edges[:-1]
     unknowns, rates = np.zeros((2, mesh.cells, NODAL + m))
     for values, derivative in ((unknowns, 0), (rates, 1)):
         values[:, THETA], values[:, NODAL:] = (angle(s, t, derivative)[0] for s in (nodes, mesh.points(rule.points)))
     unknowns[:, MOMENT] = moment(nodes, t)[0]
-    unknowns[:, FX : FY + 1] = as_pair(force(nodes, t)[0]).T
+    unknowns[:, FORCE] = as_pair(force(nodes, t)[0]).T
     position = closure.position(unknowns, closure.centre(as_pair(exact.position[0])))
     velocity = closure.velocity(unknowns, rates, closure.centre(as_pair(exact.velocity[0])))
     acceleration, tension = as_pair(exact.acceleration[0]), as_pair(force(mesh.points(places), t)[0])

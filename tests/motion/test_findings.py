@@ -5,8 +5,9 @@ import pytest
 
 from rodloop_cli import Case, simulate
 from rodloop_cli.numerics.gauss import gauss_rule
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.energies import Quadrature
-from rodloop_cli.physics.equations import BoxEquations, Load
+from rodloop_cli.physics.equations import Load
 from rodloop_cli.physics.rod import LENGTH, Mesh, Rod, Segment
 from rodloop_cli.statics import unloaded
 

@@ -12,7 +12,8 @@ from rodloop_cli.march.radau import RadauStepper, started
 from rodloop_cli.march.state import State
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.gauss import gauss_rule
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Load, X, Y
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import NODAL, Load, X, Y
 from rodloop_cli.physics.rod import Mesh, Rod, Segment
 from rodloop_cli.physics.shapes import Wave, circle, perturbed
 from rodloop_cli.simulation import Run

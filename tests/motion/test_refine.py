@@ -19,7 +19,7 @@ FLAGS = pytest.mark.parametrize("flags", ["one", "alternate", "all"])
 @cache
 def moving():
     """A state in the middle of a motion, away from the origin's symmetry."""
-    run = Run.of(Case(p=3.8, density_ratio=3.0, perturbation=[{"mode": 2, "amplitude": 0.05}], t_end=2.0))
+    run = Run.of(Case(p=3.8, density_ratio=3.0, perturbation=[{"mode": 2, "amplitude": 0.05}], t_end=2.0, N=8))
     for step in run.marcher:
         state = step.end
     return state

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rodloop_cli.numerics.gauss import gauss_rule
-from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, THETA, BoxEquations, Load, Motion, X, Y
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, THETA, Load, Motion, X, Y
 from rodloop_cli.physics.rod import Mesh, Rod, Segment
 
 LOADS = {

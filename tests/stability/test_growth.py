@@ -8,8 +8,9 @@ from rodloop_cli.march.loop import Departure, Marcher, Plan
 from rodloop_cli.march.refine import Refiner
 from rodloop_cli.march.state import State
 from rodloop_cli.march.work import Work
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.closure import Closure
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Load
+from rodloop_cli.physics.equations import NODAL, Load
 from rodloop_cli.physics.rod import Rod, Segment
 from rodloop_cli.stability.modes import ModeSearch, base_state, modes_at
 from rodloop_cli.stability.spectrum import eigenmotions

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rodloop_cli.numerics.roots import bracketed_root
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Load
+from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.equations import NODAL, Load
 from rodloop_cli.physics.rod import Rod, Segment
 from rodloop_cli.stability.compliance import Compliance
 from rodloop_cli.stability.modes import ModeSearch, base_state, modes_along, modes_at

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from rodloop_cli.errors import ConvergenceError
+from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.clearance import crossing_indicator
 from rodloop_cli.physics.closure import turned
-from rodloop_cli.physics.equations import NODAL, BoxEquations, Load
+from rodloop_cli.physics.equations import NODAL, Load
 from rodloop_cli.physics.rod import LENGTH, Rod, Segment
 from rodloop_cli.stability.threshold import classified, find_threshold, neutral_directions, outline, touches_itself
 from rodloop_cli.stability.watch import Watched, follow_watched, interpolated

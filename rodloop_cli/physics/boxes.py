@@ -1,0 +1,201 @@
+"""The balance laws on Gauss boxes: residual and exact linearisation.
+
+In a cell the only free values are the angles Θ at the m Gauss points and the six nodal values at its left end:
+position, force and moment follow by integration. What is left to solve: Θ must be the integral of M/b, and each cell
+must end where the next begins (14).
+
+Unknowns are stored cell by cell, (..., n, 6 + m): x, y, θ, M, Fx, Fy at the left node, then Θ_1 … Θ_m. θ grows by 2π
+round the loop.
+"""
+
+from math import pi
+
+import numpy as np
+
+from rodloop_cli.errors import SingularSystem
+from rodloop_cli.numerics.condensed import CondensedSystems
+from rodloop_cli.numerics.gauss import GaussRule
+from rodloop_cli.physics.equations import (
+    FX,
+    FY,
+    MOMENT,
+    NODAL,
+    THETA,
+    Balance,
+    Complex,
+    Fields,
+    Instant,
+    Load,
+    Motion,
+    X,
+    Y,
+)
+from rodloop_cli.physics.rod import Array, Mesh
+
+
+class BoxEquations(Balance):
+    """The equations cell by cell: every cell starts from its own node, and must end where the next begins."""
+
+    def __init__(self, mesh: Mesh, rule: GaussRule, load: Load) -> None:
+        super().__init__(mesh, rule, load)
+        self._integrate = rule.to_points_and_end
+        self._integrate_rows = np.ascontiguousarray(self._integrate.T)
+        self._length = mesh.lengths[:, None]
+        self._length_by_stiffness = (mesh.lengths / mesh.stiffness)[:, None]
+        self._turn = np.zeros((mesh.cells, NODAL))
+        self._turn[-1, THETA] = 2 * pi
+
+    # What `whole_loop.LoopEquations` has to do around Newton's iteration, boxes need not: their nodal values are
+    # unknowns of their own.
+
+    def compressed(self, unknowns: Array) -> Array:
+        """The unknowns as they are."""
+        return unknowns
+
+    def expanded(self, unknowns: Array, fields: Fields) -> Array:
+        """The unknowns as they are."""
+        return unknowns
+
+    def guessed(self, unknowns: Array, force: Array, motion: Motion) -> Fields:
+        """The fields of a first guess."""
+        return self.fields(unknowns, motion)
+
+    def integrated(self, unknowns: Array, fields: Fields, motion: Motion, instant: Instant) -> Fields:
+        """The fields as they are."""
+        return fields
+
+    def corrected(
+        self, integrated: Fields, unknowns: Array, correction: Array, motion: Motion, instant: Instant
+    ) -> Fields:
+        """The fields of the corrected unknowns."""
+        return self.fields(unknowns, motion)
+
+    def finished(
+        self, integrated: Fields, fields: Fields, correction: Array, motion: Motion, instant: Instant
+    ) -> Fields:
+        """The fields as they are."""
+        return fields
+
+    def angles(self, unknowns: Array) -> Array:
+        """(k, n, m): a view."""
+        return unknowns[..., NODAL:]
+
+    def _start(self, unknowns: Array, components: slice | int) -> Array:
+        start = unknowns[..., components]
+        if isinstance(components, int):
+            return start[..., None]
+        return start.transpose(start.ndim - 1, *range(start.ndim - 1))[..., None]
+
+    def _integral(self, values: Array) -> Array:
+        integral: Array = (values * self._length) @ self._integrate
+        return integral
+
+    def residual(self, unknowns: Array, fields: Fields) -> Array:
+        """(k, n, 6 + m): by how much each cell misses the next node, then the integral of M/b the angle."""
+        out = np.empty_like(unknowns)
+        out[..., X], out[..., Y] = fields.position[..., -1]
+        out[..., FX], out[..., FY] = fields.force[..., -1]
+        out[..., MOMENT] = fields.moment[..., -1]
+        out[..., THETA] = fields.theta[..., -1]
+        out[..., NODAL:] = fields.theta[..., :-1]
+        out[..., NODAL:] -= unknowns[..., NODAL:]
+        out[..., :-1, :NODAL] -= unknowns[..., 1:, :NODAL]
+        out[..., -1, :NODAL] -= unknowns[..., 0, :NODAL]
+        out[..., :NODAL] -= self._turn
+        return out
+
+    def displacement(self, cosine: Array, sine: Array, correction: Array) -> Array:
+        """(2, n, m + 1): how far a small ``correction`` (n, 6 + m) of the unknowns moves the Gauss points and right
+        ends.
+        """
+        turned = np.stack([-sine, cosine]) * (correction[:, NODAL:] * self._length)
+        moved: Array = turned @ self._integrate + correction[:, X : Y + 1].T[..., None]
+        return moved
+
+    def linearise(self, cosine: Array, sine: Array, force: Array, velocity: Array) -> Array:
+        """(3 or 2, n, 6 + m, 6 + m): parts L0, L1[, L2] of the cells' response L0 + λ² L1 + λ L2 to their own unknowns.
+
+        λ stands for the time derivative; L2 is there only with drag. Rows: the six values at the cell's right end,
+        then the integral of M/b at the Gauss points. Arguments at one instant: cosine, sine (n, m); force, velocity
+        (2, n, m).
+        """
+        parts, (n, m) = 3 if self.load.zeta_perp else 2, cosine.shape
+        size = NODAL + m
+        position = self._position_response(cosine, sine, size)
+        density = np.zeros((parts, 2, n, m, size))
+        angles = np.arange(m), NODAL + np.arange(m)
+        density[0, 0][:, *angles] = self.load.p * cosine
+        density[0, 1][:, *angles] = self.load.p * sine
+        np.multiply(position[:, :, :-1], self._density[..., None], out=density[1])
+        if parts == 3:
+            self._add_drag_response(density, position, cosine, sine, velocity)
+        density *= self._length[..., None]
+        force_response = self._integrate_rows @ density
+        force_response[0, 0, ..., FX] += 1
+        force_response[0, 1, ..., FY] += 1
+        shear = sine[..., None] * force_response[:, 0, :, :-1]
+        shear -= cosine[..., None] * force_response[:, 1, :, :-1]
+        shear[0][:, *angles] += force[0] * cosine + force[1] * sine
+        if self.load.rotary_inertia:
+            shear[1][:, *angles] += self._density * self.load.rotary_inertia
+        shear *= self._length[..., None]
+        moment = self._integrate_rows @ shear
+        moment[0, ..., MOMENT] += 1
+        turning = self._integrate_rows @ (moment[:, :, :-1] * self._length_by_stiffness[..., None])
+        turning[0, ..., THETA] += 1
+        response = np.zeros((parts, n, size, size))
+        response[0, :, X : Y + 1] = position[:, :, -1].swapaxes(0, 1)
+        response[:, :, THETA], response[:, :, MOMENT] = turning[:, :, -1], moment[:, :, -1]
+        response[:, :, FX : FY + 1] = force_response[:, :, :, -1].swapaxes(1, 2)
+        response[:, :, NODAL:] = turning[:, :, :-1]
+        return response
+
+    def _position_response(self, cosine: Array, sine: Array, size: int) -> Array:
+        """(2, n, m + 1, size): change of position at the Gauss points and the right end."""
+        n, m = cosine.shape
+        response = np.zeros((2, n, m + 1, size))
+        response[0, ..., X] = response[1, ..., Y] = 1
+        response[0, ..., NODAL:] = self._integrate_rows * (-sine * self._length)[:, None, :]
+        response[1, ..., NODAL:] = self._integrate_rows * (cosine * self._length)[:, None, :]
+        return response
+
+    def _add_drag_response(self, density: Array, position: Array, cosine: Array, sine: Array, velocity: Array) -> None:
+        """Derivative of `_drag` by position (with λ, part 2) and by angle (part 0)."""
+        zeta, excess = self.load.zeta_perp, self.load.zeta_perp * (self.load.gamma - 1)
+        c, s = cosine[..., None], sine[..., None]
+        dx, dy = position[:, :, :-1]
+        along = excess * (c * dx + s * dy)
+        density[2, 0] = zeta * dx + along * c
+        density[2, 1] = zeta * dy + along * s
+        u, v = velocity
+        angles = np.arange(cosine.shape[1]), NODAL + np.arange(cosine.shape[1])
+        cross, square = 2 * sine * cosine, cosine**2 - sine**2
+        density[0, 0][:, *angles] += excess * (square * v - cross * u)
+        density[0, 1][:, *angles] += excess * (square * u + cross * v)
+
+    def factored(self, rates: Complex, cosine: Array, sine: Array, force: Array, velocity: Array) -> CondensedSystems:
+        """The factored systems for time derivatives λ in ``rates`` (E,), the first of which is real; the other
+        arguments are those of `linearise`. Raises SingularSystem.
+        """
+        parts = self.linearise(cosine, sine, force, velocity)
+        rate = rates[:, None, None, None]
+        responses = parts[0] + rate**2 * parts[1]
+        if len(parts) > 2:
+            responses += rate * parts[2]
+        if not np.isfinite(responses.view(float)).all():
+            raise SingularSystem("the linearised system is not finite")
+        try:
+            return CondensedSystems(responses, NODAL)
+        except np.linalg.LinAlgError as error:
+            raise SingularSystem("a cell's equations are singular") from error
+
+    def load_response(self, cosine: Array, sine: Array, density: Array) -> Array:
+        """(n, 6 + m): the cells' response to an extra force density (2, n, m), in the rows of `residual`."""
+        force = (density * self._length) @ self._integrate
+        shear = (sine * force[0, :, :-1] - cosine * force[1, :, :-1]) * self._length
+        moment = shear @ self._integrate
+        turning = (moment[:, :-1] * self._length_by_stiffness) @ self._integrate
+        out = np.zeros((len(turning), NODAL + cosine.shape[1]))
+        out[:, FX : FY + 1] = force[..., -1].T
+        out[:, MOMENT], out[:, THETA], out[:, NODAL:] = moment[:, -1], turning[:, -1], turning[:, :-1]
+        return out
