@@ -146,5 +146,5 @@ stress: $(DEV_READY) ## random cases, maps over the parameters, long runs, strik
 	@.venv-cf/bin/python -m pip install --quiet --disable-pip-version-check compliance-checker setuptools
 
 .PHONY: cf-check
-cf-check: $(DEV_READY) | .venv-cf/bin/compliance-checker ## CF compliance of run, sweep and modes files
+cf-check: $(DEV_READY) | .venv-cf/bin/compliance-checker ## CF compliance of run, sweep, modes and critical files
 	@$(PY) scripts/cf_check.py $(CURDIR)/.venv-cf/bin/compliance-checker

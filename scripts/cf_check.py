@@ -16,6 +16,7 @@ COMMANDS = {
     "run.nc": ("run", "case.yaml", "-o", "run.nc"),
     "sweep/sweep.nc": ("sweep", "sweep.yaml", "-o", "sweep", "-j", "1"),
     "modes.nc": ("modes", "case.yaml", "--set", "p=2", "-o", "modes.nc"),
+    "critical.nc": ("critical", "--stiffness-ratio", "2,5", "-j", "1", "-o", "critical.nc"),
 }
 
 
@@ -24,7 +25,8 @@ def made(folder: Path) -> list[Path]:
     (folder / "case.yaml").write_text(CASE)
     (folder / "sweep.yaml").write_text(SWEEP)
     for name, command in COMMANDS.items():
-        subprocess.run([sys.executable, "-m", "rodloop_cli", "-q", *command], cwd=folder, check=False)
+        words = [sys.executable, "-m", "rodloop_cli", "-q", *command]
+        subprocess.run(words, cwd=folder, check=False, stdout=subprocess.DEVNULL)
         if not (folder / name).exists():
             print(f"{name}: not made by rodloop {' '.join(command)}")
     return [folder / name for name in COMMANDS if (folder / name).exists()]

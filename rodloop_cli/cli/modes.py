@@ -104,6 +104,6 @@ def _written(case: Case, found: list[ModesAt], output: str | None, *, force: boo
     from rodloop_cli.dataset.stability_columns import mode_columns
     from rodloop_cli.dataset.stability_files import MODES, write_table
 
-    title = f"Modes: {case.title}" if case.title else "Modes"
+    title = f"Modes: {case.title}" if case.title.strip() else "Modes"
     attributes = {"title": title, "case": case.to_yaml(), "case_sha256": case.sha256}
     return write_table(Path(output), MODES, mode_columns(found), attributes, force=force)

@@ -12,7 +12,7 @@ import click
 
 from rodloop_cli.cli.lazy import ReaderGone
 from rodloop_cli.cli.settings import Settings
-from rodloop_cli.errors import CaseError, Interrupted, RodloopError
+from rodloop_cli.errors import CaseError, Interrupted, OutputError, RodloopError
 
 
 def exit_code(command: Callable[[], object], settings: Settings) -> int:
@@ -30,7 +30,8 @@ def exit_code(command: Callable[[], object], settings: Settings) -> int:
         error.show()
         return CaseError.exit_code
     except Exception as error:  # noqa: BLE001 - the last resort: a user gets a line, not a traceback
-        return _unexpected(error, settings)
+        refusal = _refusal(error)
+        return _told(refusal) if refusal else _unexpected(error, settings)
     return result if isinstance(result, int) else 0
 
 
@@ -45,6 +46,15 @@ def _silenced() -> int:
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return ReaderGone.exit_code
+
+
+def _refusal(error: Exception) -> OutputError | None:
+    """A file that the system does not give, its name being too long or its folder closed, is an answer and no bug."""
+    if not isinstance(error, OSError) or not isinstance(error.filename, str) or not error.strerror:
+        return None
+    from rodloop_cli.case.wording import one_line
+
+    return OutputError(f"{one_line(error.filename)}: {error.strerror.lower()}")
 
 
 def _unexpected(error: Exception, settings: Settings) -> int:

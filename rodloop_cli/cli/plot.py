@@ -13,7 +13,8 @@ from rodloop_cli.cli.settings import current_settings
 def _complete_kind(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
     from rodloop_cli.plot.kinds import CONTENTS
 
-    kinds = {name: kind.words for content in CONTENTS.values() for name, kind in content.kinds.items()}
+    named = [item for content in CONTENTS.values() for item in content.kinds.items()]
+    kinds = {name: kind.words for name, kind in reversed(named)}  # those of runs are what is said of a shared name
     return [CompletionItem(name, help=words) for name, words in kinds.items() if name.startswith(incomplete)]
 
 
@@ -31,15 +32,28 @@ def plot(
     """Draw FILE.nc, or what an unfinished run left of it, and print the path of the drawing.
 
     \b
-    Kinds: overview      shapes, energies, forces, displacements
-           shapes        shapes over each other and one by one
-           energies      energy changes and their balance
-           forces        axial and shear force along the loop
-           curvature     curvature along the loop
-           kymograph     curvature over arclength and time
-           displacement  how the segments' midpoints swing
-           dissipation   power and energy taken by the film
-           movie         the shape and its energies, moving
+    Kinds, of a run:
+      overview      shapes, energies, forces, displacements
+      shapes        shapes over each other and one by one
+      energies      energy changes and their balance
+      forces        axial and shear force along the loop
+      curvature     curvature along the loop
+      kymograph     curvature over arclength and time
+      displacement  how the segments' midpoints swing
+      dissipation   power and energy taken by the film
+      movie         the shape and its energies, moving
+    of a sweep's summary, sweep.nc:
+      overview      lines over one axis, maps over two
+      lines         what was found, over the longest axis
+      maps          phase diagram of lobes, and times of first crossing
+      phases        phase diagram of lobes
+      shapes        final shapes of the members, each at its place
+    of what rodloop modes wrote:
+      overview      growth over pressure, or mode shapes
+      shapes        the fastest growing modes
+    of what rodloop critical wrote:
+      overview      critical pressures over the stiffness ratio
+      maps          which loops lose stability
 
     Figures are png, svg or pdf, movies gif, html or mp4 (needs ffmpeg: pip install 'rodloop[movie]'). An older
     drawing of the name is replaced. Frames after the loop has crossed itself are not physics: they are grey and

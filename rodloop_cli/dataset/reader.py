@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import netCDF4
 import numpy as np
 
+from rodloop_cli.case.wording import one_line
 from rodloop_cli.dataset.memory import prepare_for_saving
 from rodloop_cli.dataset.provenance import SOURCE
 from rodloop_cli.dataset.variables import TABLE
@@ -59,16 +60,23 @@ def holds_case(path: str | os.PathLike[str], sha256: str) -> bool:
 
 
 def _find(path: Path, *, partial: bool) -> Path:
+    if _is_folder(path):
+        raise OutputError(f"{path} is a folder, not a result file")
     part = path if path.suffix == ".part" else part_path(path)
     if path == part and not partial:
         raise OutputError(f"{path}: the run did not finish; partial=True opens the rows that it left")
     found = part if partial and not path.is_file() else path
     if found.is_file():
         return found
-    if path.is_dir():
-        raise OutputError(f"{path} is a folder, not a result file")
     hint = f"; an unfinished run left {part.name}, partial=True opens it" if part.is_file() else ""
     raise OutputError(f"{path}: no such file{hint}")
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except OSError as error:  # a name that is too long, a folder that may not be looked into
+        raise OutputError(f"{one_line(str(path))}: cannot be read ({error.strerror})") from error
 
 
 def _check_signature(path: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from rodloop_cli.case import Case
+from rodloop_cli.case.title import title_of
 from rodloop_cli.dataset.provenance import outcome_attributes, run_attributes
 from rodloop_cli.dataset.rows import RowSink
 from rodloop_cli.dataset.variables import Attribute
@@ -73,7 +74,7 @@ class Run:
         """What is known of the result beforehand."""
         case = self.case
         text, key = case.to_yaml(), case.sha256
-        known = run_attributes(title=case.title, case_text=text, case_sha256=key, command="rodloop run")
+        known = run_attributes(title=title_of(case), case_text=text, case_sha256=key, command="rodloop run")
         return known | ({"warning": self.warning} if self.warning else {})
 
     @property

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from itertools import chain
 from pathlib import Path
-from socket import gethostname
+from secrets import token_hex
 from typing import Any
 
 import netCDF4
@@ -33,7 +32,7 @@ def gather(plan: Plan, folder: Path) -> Path:
     """
     columns = _filled(plan, Manifest(folder).fresh())
     path = folder / SUMMARY
-    part = path.with_name(f"{SUMMARY}.{gethostname()}-{os.getpid()}.part")
+    part = path.with_name(f"{SUMMARY}.{token_hex(4)}.part")
     try:
         with netCDF4.Dataset(part, "w", format="NETCDF4") as dataset:
             _write(dataset, plan, columns)
@@ -96,7 +95,7 @@ def _global_attributes(plan: Plan) -> dict[str, Attribute]:
     now = f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
     return {
         "Conventions": CONVENTIONS,
-        "title": str(plan.sweep.base.values.get("title") or "Parameter sweep"),
+        "title": str(plan.sweep.base.values.get("title") or "").strip() or "Parameter sweep",
         "history": f"{now}: gathered from {len(plan.members)} members",
         "source": f"{SOURCE} sweep {__version__}, motion of an elastic rod loop in a soap film",
         "rodloop_content": "sweep",

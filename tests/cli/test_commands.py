@@ -4,7 +4,6 @@ import re
 import subprocess
 import sys
 from importlib.resources import files
-from importlib.util import find_spec
 
 import pytest
 from click.testing import CliRunner
@@ -28,8 +27,6 @@ def case_file(tmp_path):
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_help(command, capsys):
-    if find_spec(COMMANDS[command].target.partition(":")[0]) is None:
-        pytest.skip("not written yet")
     assert main([command, "-h"]) == 0
     shown = capsys.readouterr().out
     assert shown.startswith(f"Usage: rodloop {command} ")

@@ -36,6 +36,8 @@ def ending(monkeypatch):
         (click.Abort(), 130, ["interrupted"]),
         (click.FileError("x.nc", "gone"), 2, ["Error: Could not open file 'x.nc': gone"]),
         (BrokenPipeError(), 141, []),
+        (OSError(36, "File name too long", "x.nc"), 2, ["x.nc: file name too long"]),
+        (OSError("odd"), 1, ["internal error: OSError: odd; rerun with --debug for the traceback"]),
         (
             ZeroDivisionError("division\nby zero"),
             1,

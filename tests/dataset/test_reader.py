@@ -82,6 +82,18 @@ def test_what_is_no_result(tmp_path, content, message):
         open_run(path)
 
 
+@pytest.mark.parametrize("partial", [False, True])
+@pytest.mark.parametrize("path", [".", "..", "/", ""])
+def test_folders_without_a_name_are_folders_too(path, partial):
+    with pytest.raises(OutputError, match="is a folder, not a result file"):
+        open_run(path, partial=partial)
+
+
+def test_a_name_that_no_file_can_have():
+    with pytest.raises(OutputError, match=r"cannot be read|no such file"):
+        open_run("a" * 300)
+
+
 def test_folder_and_part_are_told_apart(tmp_path):
     with pytest.raises(OutputError, match="is a folder"):
         open_run(tmp_path)

@@ -230,6 +230,13 @@ def test_an_unfinished_run_is_drawn_and_says_so(changed, here, capsys):
         assert capsys.readouterr() == ("killed.png\n", "")
 
 
+def test_the_help_lists_the_kinds_of_every_sort_of_file(capsys):
+    assert main(["plot", "--help"]) == 0
+    description = capsys.readouterr().out.partition("Options:")[0]
+    listed = [line.split(None, 1) for line in description.splitlines() if line.startswith("    ")]
+    assert listed == [[name, kind.words] for content in CONTENTS.values() for name, kind in content.kinds.items()]
+
+
 def test_help_needs_nothing_heavy():
     code = (
         "import sys; from rodloop_cli.cli import main; assert main(['plot', '-h']) == 0\n"

@@ -16,9 +16,10 @@ from rodloop_cli.cli import main
 from rodloop_cli.dataset import open_run
 from rodloop_cli.errors import ConvergenceError, OutputError
 from rodloop_cli.simulation import Run
-from rodloop_cli.sweep import open_sweep, run_sweep
+from rodloop_cli.sweep import gather, open_sweep, run_sweep
 from rodloop_cli.sweep.columns import Status
 from rodloop_cli.sweep.executors import Crew
+from rodloop_cli.sweep.run import Sweep
 
 
 def sweep(path, folder, *more, code=0):
@@ -232,6 +233,20 @@ def test_a_folder_without_sweep_nc_is_no_sweep(tmp_path):
     (tmp_path / "sweep.nc").write_text("no netCDF")
     with pytest.raises(OutputError, match="damaged"):
         open_sweep(tmp_path)
+
+
+def test_two_sweeps_of_a_folder_may_end_together(sweep_file, tmp_path, monkeypatch):
+    path, folder, write = sweep_file(), tmp_path / "out", gather._write
+
+    def write_while_another_does(*arguments):
+        monkeypatch.setattr(gather, "_write", write)
+        gather.gather(Sweep.of(path, folder).plan, folder)
+        write(*arguments)
+
+    monkeypatch.setattr(gather, "_write", write_while_another_does)
+    run_sweep(path, folder)
+    assert (open_sweep(folder).summary["status"] == Status.reached_end).all()
+    assert not list(folder.glob("*.part"))
 
 
 def test_an_output_that_is_a_file_is_refused(sweep_file, tmp_path, capsys):
