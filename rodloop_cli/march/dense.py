@@ -5,74 +5,110 @@ stages' own; velocities are that polynomial; forces and moments interpolate the 
 at the start being of lower order.
 """
 
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 
 from rodloop_cli.march.state import Step
-from rodloop_cli.numerics.gauss import Array, gauss_rule, lagrange_matrix
+from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.numerics.interpolation import interpolation, series
 from rodloop_cli.physics.equations import NODAL, THETA
 
 
-class Shapes(NamedTuple):
-    """The loop at k instants, at the Gauss points and, last, at the right end of each cell.
+class Shapes:
+    """The loop at ``times`` (k,) within a step, at the Gauss points and, last, at the right end of each cell.
 
-    times: (k,);  tangent: (2, k, n, m) at the Gauss points alone;  theta, moment: (k, n, m + 1);
-    position, velocity, force: (2, k, n, m + 1);  spin: (k, n, m) θ_t at the Gauss points, empty without rotary inertia.
+    Whatever is not asked for is not computed.
     """
 
-    times: Array
-    tangent: Array
-    theta: Array
-    position: Array
-    velocity: Array
-    force: Array
-    moment: Array
-    spin: Array
+    def __init__(self, step: Step, times: Array) -> None:
+        self.times = times
+        self._step = step
+        self._series = series(fractions(step, times), len(step.nodes) + 2)
+        nodes = tuple(step.nodes.tolist())
+        self._by_stages, self._by_rates = interpolation(nodes), interpolation((0.0, *nodes))
+
+    @property
+    def tangent(self) -> Array:
+        """(2, k, n, m) at the Gauss points alone."""
+        return self._shape[0]
+
+    @property
+    def position(self) -> Array:
+        """(2, k, n, m + 1)."""
+        return self._shape[1]
+
+    @cached_property
+    def theta(self) -> Array:
+        """(k, n, m + 1)."""
+        angles, nodal = self._moved[..., NODAL:], self._moved[..., THETA]
+        theta = np.empty((*angles.shape[:-1], angles.shape[-1] + 1))
+        theta[..., :-1] = angles
+        theta[:, :-1, -1] = nodal[:, 1:]
+        theta[:, -1, -1] = nodal[:, 0] + 2 * np.pi
+        return theta
+
+    @cached_property
+    def velocity(self) -> Array:
+        """(2, k, n, m + 1)."""
+        return self._from_rates(self._step.start.velocity[:, None], self._step.fields.velocity)
+
+    @cached_property
+    def force(self) -> Array:
+        """(2, k, n, m + 1)."""
+        return _weighted(self._stage_weights, self._step.fields.force)
+
+    @cached_property
+    def moment(self) -> Array:
+        """(k, n, m + 1)."""
+        moment: Array = _weighted(self._stage_weights, self._step.fields.moment[None])[0]
+        return moment
+
+    @cached_property
+    def spin(self) -> Array:
+        """θ_t (k, n, m) at the Gauss points."""
+        step = self._step
+        spin: Array = self._from_rates(step.start.rates[None, None, :, NODAL:], step.rates[None, ..., NODAL:])[0]
+        return spin
+
+    @cached_property
+    def _shape(self) -> tuple[Array, Array]:
+        return self._step.start.equations.shape(self._moved)
+
+    @cached_property
+    def _moved(self) -> Array:
+        """(k, n, 6 + m): positions and angles among the unknowns; the rest has no meaning."""
+        step = self._step
+        weights = self._series @ (step.size * self._by_rates.integrals)
+        moved: Array = _weighted(weights[:, 1:], step.rates[None])[0]
+        moved += weights[:, 0, None, None] * step.start.rates
+        moved += step.start.unknowns
+        return moved
+
+    def _from_rates(self, start: Array, stages: Array) -> Array:
+        """(c, k, …): the polynomial through the values at the start (c, 1, …) and at the stages (c, s, …)."""
+        values = _weighted(self._rate_weights[:, 1:], stages)
+        values += self._rate_weights[:, 0, None, None] * start
+        return values
+
+    @cached_property
+    def _rate_weights(self) -> Array:
+        weights: Array = self._series[:, :-1] @ self._by_rates.values
+        return weights
+
+    @cached_property
+    def _stage_weights(self) -> Array:
+        weights: Array = self._series[:, :-2] @ self._by_stages.values
+        return weights
 
 
-def shapes_at(step: Step, times: Array) -> Shapes:
-    """The loop at ``times`` (k,) within the step."""
-    fractions = np.clip((times - step.start.time) / step.size, 0.0, 1.0)
-    unknowns = _moved(step, fractions)
-    tangent, position = step.start.equations.shape(unknowns)
-    from_stages = lagrange_matrix(step.nodes, fractions)
-    from_rates = lagrange_matrix(np.concatenate([[0.0], step.nodes]), fractions)
-    velocity = np.einsum("ks,csnm->cknm", from_rates[:, 1:], step.fields.velocity)
-    velocity += from_rates[:, 0, None, None] * step.start.velocity[:, None]
-    force = np.einsum("ks,csnm->cknm", from_stages, step.fields.force)
-    moment = np.tensordot(from_stages, step.fields.moment, 1)
-    spin = _spin(step, from_rates) if step.start.equations.load.rotary_inertia else np.zeros(0)
-    return Shapes(times, tangent, _theta(unknowns), position, velocity, force, moment, spin)
+def fractions(step: Step, times: Array) -> Array:
+    """(k,): where times within the step, but for round-off, lie between its start (0) and its end (1)."""
+    return np.minimum(np.maximum((times - step.start.time) / step.size, 0.0), 1.0)
 
 
-def _moved(step: Step, fractions: Array) -> Array:
-    """(k, n, 6 + m): the unknowns at fractions (k,) of the step (positions and angles; the rest has no meaning)."""
-    rates = np.concatenate([step.start.rates[None], step.rates])
-    weights = step.size * integrals_of_basis(np.concatenate([[0.0], step.nodes]), fractions)
-    moved: Array = (weights @ rates.reshape(len(rates), -1)).reshape(len(fractions), *rates.shape[1:])
-    moved += step.start.unknowns
-    return moved
-
-
-def _spin(step: Step, from_rates: Array) -> Array:
-    """(k, n, m): θ_t."""
-    spin: Array = np.tensordot(from_rates[:, 1:], step.rates[..., NODAL:], 1)
-    spin += from_rates[:, 0, None, None] * step.start.rates[:, NODAL:]
-    return spin
-
-
-def _theta(unknowns: Array) -> Array:
-    theta = np.empty((*unknowns.shape[:-1], unknowns.shape[-1] - NODAL + 1))
-    theta[..., :-1] = unknowns[..., NODAL:]
-    theta[..., -1] = np.roll(unknowns[..., THETA], -1, axis=-1)
-    theta[..., -1, -1] += 2 * np.pi
-    return theta
-
-
-def integrals_of_basis(nodes: Array, fractions: Array) -> Array:
-    """(k, nodes): integrals from 0 to each fraction of the Lagrange basis on ``nodes``."""
-    rule = gauss_rule(len(nodes) // 2 + 1)
-    samples = lagrange_matrix(nodes, np.multiply.outer(fractions, rule.points).ravel())
-    integrals: Array = np.einsum("g,kgn->kn", rule.weights, samples.reshape(len(fractions), rule.m, len(nodes)))
-    return integrals * fractions[:, None]
+def _weighted(weights: Array, stages: Array) -> Array:
+    """(c, k, …): sums of values at the stages (c, s, …) with weights (k, s)."""
+    flat = stages.reshape(*stages.shape[:2], -1)
+    sums: Array = (weights @ flat).reshape(len(stages), len(weights), *stages.shape[2:])
+    return sums

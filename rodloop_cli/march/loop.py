@@ -7,7 +7,7 @@ import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
 from rodloop_cli.march.predictor import Past
-from rodloop_cli.march.radau import RadauStepper
+from rodloop_cli.march.radau import ITERATION_ERROR, RadauStepper
 from rodloop_cli.march.refine import Finer, Refiner
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
@@ -39,6 +39,11 @@ class Plan:
     stages: int
     longest: float
     first: float
+
+    @property
+    def iteration_error(self) -> float:
+        """Newton's share of the error: who asks for a loose tolerance does not look at energies."""
+        return 3 * ITERATION_ERROR if self.tol >= LOOSEST else ITERATION_ERROR
 
     def allowance(self, scale: float) -> float:
         """Position error allowed in a step, for a departure ``scale``."""
@@ -72,7 +77,7 @@ class Marcher:
     def __init__(self, state: State, plan: Plan, refiner: Refiner, departure: Departure, work: Work) -> None:
         self.plan, self.work = plan, work
         self._refiner, self._departure = refiner, departure
-        self.stepper = RadauStepper(plan.stages, work)
+        self.stepper = RadauStepper(plan.stages, work, plan.iteration_error)
         self.controller = Controller(plan.stages + 1)
         self.state, self.base = state, state.position
         self.last: Past | None = None

@@ -28,16 +28,20 @@ MOST_FULL = 64
 STARTING_ACCURACY = 1e-8
 STARTING_LENGTHS = (1.0, 10.0)
 
-ITERATION_ERROR = 0.01
-"""Newton's share of the position error allowed in a step."""
+ITERATION_ERROR = 0.003
+"""Newton's share of the position error allowed in a step. Its error in velocities, and so in energies, is that in
+positions over the step."""
+
+LEAST_TARGET = 3e-14
+"""Position error below which Newton is not asked to go: round-off."""
 
 
 class RadauStepper:
     """Makes steps; remembers the linearisation and the last step, which only speed it up."""
 
-    def __init__(self, stages: int, work: Work) -> None:
+    def __init__(self, stages: int, work: Work, iteration_error: float = ITERATION_ERROR) -> None:
         self.method = radau_iia(stages)
-        self.work = work
+        self.work, self._iteration_error = work, iteration_error
         self._modes = _modes(stages)
         self.linearisation: Linearisation | None = None
         self.contraction = 1.0
@@ -69,7 +73,7 @@ class RadauStepper:
                 guess,
                 self._kept(equations, size),
                 renew,
-                ITERATION_ERROR * allowance,
+                max(LEAST_TARGET, self._iteration_error * allowance),
             )
         except SingularSystem:
             solution, self.linearisation = None, None

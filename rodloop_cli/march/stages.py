@@ -31,7 +31,7 @@ or a jump of the moment switched on), the second one is the first that is worth 
 DIVERGING = 10.0
 """Growth of the correction after which no linearisation helps."""
 
-MAX_ITERATIONS = 8
+MAX_ITERATIONS = 10
 
 ROUND_OFF = 1e-11
 STALLED = 0.5

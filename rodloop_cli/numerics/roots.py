@@ -2,29 +2,58 @@
 
 from collections.abc import Callable
 
+Point = tuple[float, float]
+"""Where, and the value there."""
+
 MOST_EVALUATIONS = 200
 
 
 def bracketed_root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:
-    """A point where ``function`` changes sign, to ``tolerance``, on the side of ``high``; ends must differ in sign.
+    """A point where ``function`` changes sign, to ``tolerance``, on the side of ``high``; ends must differ in sign."""
+    return root_between(function, (low, function(low)), (high, function(high)), tolerance)
 
-    Secant steps inside the bracket; a bisection whenever the last two steps did not halve it, which also serves a
-    function that jumps from one sign to the other.
+
+def root_between(function: Callable[[float], float], below: Point, above: Point, tolerance: float) -> float:
+    """The same with the values at the ends, which need not be exact if their signs are what counts.
+
+    Chandrupatla's method [Advances in Engineering Software 28 (1997) 145], begun with a secant: inverse quadratic
+    interpolation where the function is like a parabola, bisection elsewhere, which also serves one that jumps. No
+    guess comes nearer to an end than half the tolerance, so that the bracket closes once the root is found.
     """
-    at_low, at_high = function(low), function(high)
-    positive = at_high > 0
-    slow = 0
+    positive = above[1] > 0
+    guess = _secant(below, above)
     for _ in range(MOST_EVALUATIONS):
-        width = high - low
-        if width <= tolerance or at_high == 0:
+        width = above[0] - below[0]
+        if width <= tolerance or above[1] == 0:
             break
-        guess = low + width / 2
-        if slow < 2 and at_high != at_low:
-            guess = min(max(high - at_high * width / (at_high - at_low), low + 0.02 * width), high - 0.02 * width)
-        value = function(guess)
-        if (value > 0) == positive or value == 0:
-            high, at_high = guess, value
+        margin = min(tolerance, width) / 2
+        guess = min(max(guess, below[0] + margin), above[0] - margin)
+        new = guess, function(guess)
+        if (new[1] > 0) == positive or new[1] == 0:
+            left, above = above, new
+            guess = _interpolated(new, below, left)
         else:
-            low, at_low = guess, value
-        slow = 0 if slow == 2 or high - low < width / 2 else slow + 1
-    return high
+            left, below = below, new
+            guess = _interpolated(new, above, left)
+    return above[0]
+
+
+def _secant(one: Point, other: Point) -> float:
+    (x1, f1), (x2, f2) = one, other
+    return x1 + (x2 - x1) * f1 / (f1 - f2) if f1 != f2 else (x1 + x2) / 2
+
+
+def _interpolated(new: Point, opposite: Point, left: Point) -> float:
+    """The root of the parabola x(f) through three points if it is monotonic between the first two, else their middle.
+
+    ``left`` lies behind the new point, which replaced it as an end of the bracket.
+    """
+    (x1, f1), (x2, f2), (x3, f3) = new, opposite, left
+    if f2 == f3:
+        return (x1 + x2) / 2
+    place, height = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+    if height**2 >= place or (1 - height) ** 2 >= 1 - place:
+        return (x1 + x2) / 2
+    towards_opposite = f1 / (f2 - f1) * f3 / (f2 - f3) * (x2 - x1)
+    towards_left = f1 / (f3 - f1) * f2 / (f3 - f2) * (x3 - x1)
+    return x1 + towards_opposite + towards_left

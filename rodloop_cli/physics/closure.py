@@ -8,6 +8,12 @@ from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.equations import NODAL, THETA, X, Y
 from rodloop_cli.physics.rod import Array
 
+CLOSED = 1e-15
+"""The gap that round-off leaves in a loop of length 2π."""
+
+MOST_STEPS = 4
+"""Of Newton's method for the gap: from 1e-2 to round-off."""
+
 
 class Closure:
     """Integrates (10) around one mesh."""
@@ -21,8 +27,10 @@ class Closure:
         ``unknowns``.
         """
         tangent = self._tangent(unknowns)
-        for _ in range(4):
+        for _ in range(MOST_STEPS):
             gap = np.einsum("cnm,nm->c", tangent, self._weights)
+            if np.abs(gap).max() < CLOSED:
+                break
             unknowns[:, NODAL:] -= self._closing(tangent, gap)
             tangent = self._tangent(unknowns)
         return self._integrate(unknowns, tangent, centre)

@@ -13,6 +13,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from rodloop_cli.physics.around import following
+
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
@@ -30,7 +32,9 @@ def find_crossings(x: Floats, y: Floats) -> Floats:
     """
     x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
     first, second = _edges_with_overlapping_boxes(x, y)
-    ex, ey = np.roll(x, -1) - x, np.roll(y, -1) - y
+    if not first.size:
+        return np.empty((0, 2))
+    ex, ey = following(x) - x, following(y) - y
     gap_x, gap_y = x[second] - x[first], y[second] - y[first]
     ax, ay, bx, by = ex[first], ey[first], ex[second], ey[second]
     # Sides of the line of one edge on which the two ends of the other lie. With overlapping boxes the edges
@@ -57,12 +61,12 @@ def _root(start: Floats, end: Floats) -> Floats:
 
 def _is_convex(x: Floats, y: Floats) -> bool:
     """Whether the polyline turns left at every vertex and once around in all: then it cannot meet itself."""
-    ex, ey = np.roll(x, -1) - x, np.roll(y, -1) - y
-    turning = ex * np.roll(ey, -1) - ey * np.roll(ex, -1)
+    ex, ey = following(x) - x, following(y) - y
+    turning = ex * following(ey) - ey * following(ex)
     if not (turning > 0.0).all():
         return False
     upward = ey > 0.0
-    return int(np.count_nonzero(upward != np.roll(upward, 1))) == 2
+    return int(np.count_nonzero(upward != following(upward))) == 2
 
 
 def _edges_with_overlapping_boxes(x: Floats, y: Floats) -> tuple[Indices, Indices]:
@@ -74,17 +78,15 @@ def _edges_with_overlapping_boxes(x: Floats, y: Floats) -> tuple[Indices, Indice
     left, right = _interval(x)
     bottom, top = _interval(y)
     order = np.argsort(left, kind="stable")
-    ends = np.searchsorted(left[order], right[order], side="right")
-    followers = ends - np.arange(1, len(x) + 1)
-    one = np.repeat(np.arange(len(x)), followers)
-    rank = np.arange(len(one)) - np.repeat(np.cumsum(followers) - followers, followers)
-    i, j = order[one], order[one + 1 + rank]
-    apart = np.abs(i - j)
-    keep = (bottom[i] <= top[j]) & (bottom[j] <= top[i]) & (apart > 1) & (apart < len(x) - 1)
-    i, j = i[keep], j[keep]
-    return np.minimum(i, j), np.maximum(i, j)
+    after = np.arange(1, len(x) + 1)
+    followers = np.searchsorted(left[order], right[order], side="right") - after
+    one = np.repeat(order, followers)
+    other = order[np.arange(len(one)) + np.repeat(after - np.cumsum(followers) + followers, followers)]
+    i, j = np.minimum(one, other), np.maximum(one, other)
+    keep = (bottom[i] <= top[j]) & (bottom[j] <= top[i]) & (j - i > 1) & (j - i < len(x) - 1)
+    return i[keep], j[keep]
 
 
 def _interval(values: Floats) -> tuple[Floats, Floats]:
-    following = np.roll(values, -1)
-    return np.minimum(values, following), np.maximum(values, following)
+    ends = following(values)
+    return np.minimum(values, ends), np.maximum(values, ends)

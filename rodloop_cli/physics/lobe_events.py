@@ -111,7 +111,8 @@ def radial_range(curvature: Array) -> float:
     waves = np.fft.rfft(curvature)
     n = np.arange(len(waves))
     waves[:2], waves[2:] = 0, waves[2:] / (n[2:] ** 2 - 1)
-    return float(np.ptp(np.fft.irfft(waves, len(curvature))))
+    displacement = np.fft.irfft(waves, len(curvature))
+    return float(displacement.max() - displacement.min())
 
 
 def _unmatched(before: list[int], after: list[int], reach: float, points: int) -> tuple[list[int], list[int]]:

@@ -19,10 +19,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from rodloop_cli.physics.around import following
+
 PROMINENCE = 0.05
 """Least height of a lobe over the higher of its valleys, as a fraction of the range of curvature. Ripples from the
 junctions stay below it; lobes of a segment up to some 10 times stiffer than the rest, whose curvature is that
 much smaller, stay above."""
+
+TWO_PASSES = np.array([1.0, 4.0, 6.0, 4.0, 1.0]) / 16.0
+"""The weights of the (1, 2, 1)/4 filter applied twice."""
 
 LEAST_RANGE = 1e-6
 """A range of curvature (times R) below which the shape is a circle: a mode-2 perturbation of amplitude 1e-6 makes
@@ -41,27 +46,28 @@ def find_lobes(curvature: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     spaced or nearly so, and at least some 8 to a lobe.
     """
     smooth = _without_grid_ripple(np.asarray(curvature, dtype=np.float64))
-    span = float(np.ptp(smooth))
+    span = float(smooth.max() - smooth.min())
     if span < LEAST_RANGE:
         return np.empty(0, dtype=np.intp)
     turns = _extremes_from_lowest(smooth)
-    tops = [turns[i] for i in _standing_out(smooth[turns].tolist(), PROMINENCE * span)]
-    return np.array(sorted(top for top in tops if smooth[top] > 0.0), dtype=np.intp)
+    heights = smooth[turns].tolist()
+    tops = [i for i in _standing_out(heights, PROMINENCE * span) if heights[i] > 0.0]
+    return np.sort(turns[tops])
 
 
 def _without_grid_ripple(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Two passes of the periodic (1, 2, 1)/4 filter: removes waves of 2 or 3 samples, overshoots nowhere."""
-    around = np.concatenate([values[-2:], values, values[:2]])
-    return np.convolve(around, np.array([1.0, 4.0, 6.0, 4.0, 1.0]) / 16.0, mode="valid")
+    return np.convolve(np.concatenate([values[-2:], values, values[:2]]), TWO_PASSES, mode="valid")
 
 
 def _extremes_from_lowest(values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     """Indices of the alternating minima and maxima around the loop, from the lowest one on."""
-    steps = np.roll(values, -1) - values
+    steps = following(values) - values
     moving = np.flatnonzero(steps)  # plateaus count as their first point
     rising = steps[moving] > 0.0
-    extremes = (moving[np.roll(rising, 1) != rising]).astype(np.intp)
-    return np.roll(extremes, -int(np.argmin(values[extremes])))
+    extremes = following(moving)[following(rising) != rising]
+    lowest = int(np.argmin(values[extremes]))
+    return np.concatenate([extremes[lowest:], extremes[:lowest]])
 
 
 def _standing_out(heights: Sequence[float], least: float) -> Iterator[int]:

@@ -18,17 +18,16 @@ class Sampler:
         self.cell: NDArray[np.int_] = np.clip(np.searchsorted(mesh.edges, s, side="right") - 1, 0, mesh.cells - 1)
         local = (s - mesh.edges[self.cell]) / mesh.lengths[self.cell]
         self._weights = lagrange_matrix(np.concatenate([[0.0], rule.points, [1.0]]), local)
+        self._start = self.cell == 0
         self.stiffness = mesh.stiffness[self.cell]
         self.segment = mesh.segment[self.cell]
 
-    def __call__(self, values: Array, turn: float = 0.0) -> Array:
-        """(…, S) from values (…, n, m + 1) at the Gauss points and right ends; ``turn`` is what they gain round the
-        loop.
+    def __call__(self, values: Array, turn: float | Array = 0.0) -> Array:
+        """(…, S) from values (…, n, m + 1) at the Gauss points and right ends; ``turn`` (…, 1) is what they gain round
+        the loop.
         """
-        left = values[..., self.cell - 1, -1]
-        if turn:
-            left -= turn * (self.cell == 0)
-        left *= self._weights[:, 0]
-        left += np.einsum("...sj,sj->...s", values[..., self.cell, :], self._weights[:, 1:])
-        sampled: Array = left
+        sampled: Array = values[..., self.cell - 1, -1]
+        sampled -= turn * self._start
+        sampled *= self._weights[:, 0]
+        sampled += np.einsum("...sj,sj->...s", values[..., self.cell, :], self._weights[:, 1:])
         return sampled

@@ -17,12 +17,13 @@ import numpy as np
 from rodloop_cli.numerics.gauss import gauss_rule
 from rodloop_cli.physics.rod import LENGTH, Array, Rod
 
-Along = Callable[[Array], Array]
-
 QUADRATURE_POINTS = 16
 CELLS_PER_WAVE = 2
-DIFFERENCE = 1e-6
-"""For the curvature of a perturbed shape, which serves as a first guess of the moment alone."""
+
+CONVERGED = 1e-9
+"""A step of Newton's method for the old arclength after which what is left, its square, is round-off."""
+
+MOST_STEPS = 12
 
 
 @dataclass(frozen=True)
@@ -56,23 +57,27 @@ def slope(waves: tuple[Wave, ...], s: Array) -> Array:
     return sum((-w.mode * w.amplitude * np.sin(w.mode * s - w.phase) for w in waves), np.zeros_like(s))
 
 
+def slope_change(waves: tuple[Wave, ...], s: Array) -> Array:
+    """δ''(s)."""
+    return sum((-(w.mode**2) * w.amplitude * np.cos(w.mode * s - w.phase) for w in waves), np.zeros_like(s))
+
+
 @dataclass(frozen=True)
 class Shape:
-    """A closed shape of length 2π: tangent angle and curvature along s; smooth between ``breaks``, which include 0
-    and 2π.
+    """A closed shape of length 2π, smooth between ``breaks``, which include 0 and 2π.
 
-    centre: of the material points, each weighted by arclength.
+    along: tangent angle and curvature at s of any dimensions;  centre: of the material points, each weighted by
+    arclength.
     """
 
-    theta: Along
-    curvature: Along
+    along: Callable[[Array], tuple[Array, Array]]
     breaks: Array
     centre: Array
 
 
 def circle() -> Shape:
     """x = sin s, y = -cos s."""
-    return Shape(lambda s: s, np.ones_like, np.array([0.0, LENGTH]), np.zeros(2))
+    return Shape(lambda s: (s, np.ones_like(s)), np.array([0.0, LENGTH]), np.zeros(2))
 
 
 def perturbed(base: Shape, waves: tuple[Wave, ...], rod: Rod) -> Shape:
@@ -87,16 +92,14 @@ def perturbed(base: Shape, waves: tuple[Wave, ...], rod: Rod) -> Shape:
     ends = rod.ends if rod.has_stiffness_contrast else np.array([LENGTH])
     arclength = _NewArclength(base, waves, ends)
 
-    def turned(s: Array) -> Array:
-        old = arclength.old(s)
-        delta, delta_slope = displacement(waves, old), slope(waves, old)
-        return base.theta(old) - np.arctan2(delta_slope, 1 + delta)
+    def along(s: Array) -> tuple[Array, Array]:
+        old, rate = arclength.old(s)
+        theta, curvature = base.along(old)
+        outward, forward = slope(waves, old), 1 + displacement(waves, old)
+        turning = (forward * slope_change(waves, old) - outward**2) / (forward**2 + outward**2)
+        return theta - np.arctan2(outward, forward), (curvature - turning) * rate
 
-    def curvature(s: Array) -> Array:
-        inside = np.clip(s, DIFFERENCE, LENGTH - DIFFERENCE)
-        return (turned(inside + DIFFERENCE) - turned(inside - DIFFERENCE)) / (2 * DIFFERENCE)
-
-    return Shape(turned, curvature, arclength.new(base.breaks), _centre(base, waves, arclength))
+    return Shape(along, arclength.new(base.breaks), _centre(base, waves, arclength))
 
 
 class _NewArclength:
@@ -118,7 +121,7 @@ class _NewArclength:
 
     def stretch(self, s: Array) -> Array:
         delta, delta_slope = displacement(self._waves, s), slope(self._waves, s)
-        return np.hypot(1 + self._base.curvature(s) * delta, delta_slope)
+        return np.hypot(1 + self._base.along(s)[1] * delta, delta_slope)
 
     def _integral(self, start: Array, end: Array) -> Array:
         points = start[..., None] + (end - start)[..., None] * self._rule.points
@@ -132,14 +135,20 @@ class _NewArclength:
         mapped: Array = self._new_edges[cell] + self._scale[cell] * inside
         return mapped
 
-    def old(self, new: Array) -> Array:
-        """Points of the base that have this new arclength, by Newton's method inside a cell."""
+    def old(self, new: Array) -> tuple[Array, Array]:
+        """Points of the base that have this new arclength, by Newton's method inside a cell, and their rate of change
+        with it.
+        """
         cell = np.clip(np.searchsorted(self._new_edges, new, side="right") - 1, 0, len(self._scale) - 1)
+        start, new_start, scale = self._edges[cell], self._new_edges[cell], self._scale[cell]
         old: Array = np.interp(new, self._new_edges, self._edges)
-        for _ in range(8):
-            excess = self._new_edges[cell] + self._scale[cell] * self._integral(self._edges[cell], old) - new
-            old = old - excess / (self._scale[cell] * self.stretch(old))
-        return old
+        for _ in range(MOST_STEPS):
+            rate = 1 / (scale * self.stretch(old))
+            step = (new - new_start - scale * self._integral(start, old)) * rate
+            old = old + step
+            if np.abs(step).max() < CONVERGED:
+                break
+        return old, rate
 
 
 def _centre(base: Shape, waves: tuple[Wave, ...], arclength: _NewArclength) -> Array:

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from rodloop_cli.march.dense import Shapes, integrals_of_basis, shapes_at
+from rodloop_cli.march.dense import Shapes, fractions
 from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array, gauss_rule
+from rodloop_cli.numerics.interpolation import interpolation, series
 from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.equations import Load
 
@@ -19,6 +20,7 @@ class EnergyAccount:
         self._load = load
         self._dissipated = 0.0
         self._first: tuple[float, float] | None = None
+        self._film: tuple[Step, Array] | None = None
         self.largest_residual = 0.0
         self.largest_change = 0.0
 
@@ -30,8 +32,7 @@ class EnergyAccount:
         if self._load.rotary_inertia:
             kinetic = kinetic + quadrature.rotary(shapes.spin, self._load.rotary_inertia)
         surface = self._load.p * area
-        fractions = np.clip((shapes.times - step.start.time) / step.size, 0.0, 1.0)
-        dissipated = self._dissipated + self._taken(step, fractions, quadrature)
+        dissipated = self._dissipated + self._taken(step, shapes.times, quadrature)
         rate = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
         return {
             "bending_energy": bending,
@@ -47,7 +48,7 @@ class EnergyAccount:
 
     def close(self, step: Step, quadrature: Quadrature) -> None:
         """Add what the film took in the whole step."""
-        self._dissipated += float(self._taken(step, np.array([1.0]), quadrature)[0])
+        self._dissipated += float(self._taken(step, np.array([step.start.time + step.size]), quadrature)[0])
 
     def memory(self) -> tuple[float, ...]:
         """What a continued run needs to know."""
@@ -68,12 +69,19 @@ class EnergyAccount:
         self.largest_change = max(self.largest_change, float(change.max()))
         return residual
 
-    def _taken(self, step: Step, fractions: Array, quadrature: Quadrature) -> Array:
-        """(k,): energy taken by the film from the start of the step, from the power at Gauss points in time."""
+    def _taken(self, step: Step, times: Array, quadrature: Quadrature) -> Array:
+        """(k,): energy taken by the film from the start of the step."""
         if self._load.zeta_perp == 0:
-            return np.zeros(len(fractions))
-        nodes = gauss_rule(len(step.nodes) + 1).points
-        shapes = shapes_at(step, step.start.time + step.size * nodes)
-        power = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
-        taken: Array = step.size * integrals_of_basis(nodes, fractions) @ power
+            return np.zeros(len(times))
+        if self._film is None or self._film[0] is not step:
+            self._film = step, self._integrated_power(step, quadrature)
+        coefficients = self._film[1]
+        taken: Array = series(fractions(step, times), len(coefficients)) @ coefficients
         return taken
+
+    def _integrated_power(self, step: Step, quadrature: Quadrature) -> Array:
+        """The energy taken since the start of the step as a `series`, from the power at Gauss points in time."""
+        nodes = gauss_rule(len(step.nodes) + 1).points
+        shapes = Shapes(step, step.start.time + step.size * nodes)
+        power = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
+        return interpolation(tuple(nodes.tolist())).integrals @ (step.size * power)

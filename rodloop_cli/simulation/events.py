@@ -4,16 +4,17 @@ All are located on the dense output of the step they fall into, to round-off of 
 """
 
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
-from rodloop_cli.march.dense import shapes_at
+from rodloop_cli.march.dense import Shapes
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.numerics.roots import bracketed_root
+from rodloop_cli.numerics.roots import Point, bracketed_root, root_between
 from rodloop_cli.physics.boxes import BoxEquations
-from rodloop_cli.physics.clearance import crossing_indicator
+from rodloop_cli.physics.clearance import crossing_indicator, least_clearance
 from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.crossing import crosses_itself
 from rodloop_cli.physics.energies import Quadrature
@@ -28,11 +29,6 @@ WATCHED_POINTS, LOCATED_POINTS = 128, 400
 """Points of the polygons on which a crossing is noticed and located; their sides leave the curve by 3e-4 κ and 3e-5
 κ."""
 
-MOST_POINTS = 800
-"""On a mesh with more points than this the clearance is that of the polygon of LOCATED_POINTS: every point is compared
-with every other one, which took 1.3 s on 400 cells and no memory is enough for on 4000.
-"""
-
 
 class CrossingWatch:
     """Finds the first time at which the centreline crosses itself.
@@ -45,50 +41,52 @@ class CrossingWatch:
     def __init__(self) -> None:
         self._equations: BoxEquations | None = None
         self._watched: Sampler
-        self._located: Sampler
         self._reference: Array
         self._safe = 0.0
 
     def first_in(self, step: Step) -> float | None:
         """Time of the first crossing in the step, None if there is none."""
-        if (step.fields.moment >= 0).all():
+        if step.fields.moment.min() >= 0:
             self._safe = 0.0
             return None
         self._use(step.start.equations)
-        before = 0.0
-        for stage, node in enumerate(step.nodes):
-            if self._may_have_crossed(step, stage):
-                if crosses_itself(*self._watched(step.fields.position[:, stage])):
-                    return self._locate(step, before, float(node))
-                self._keep(step, stage)
-            before = float(node)
+        stage = self._next_suspect(step, 0)
+        while stage is not None:
+            polygon = self._watched(step.fields.position[:, stage])
+            if crosses_itself(*polygon):
+                before = float(step.nodes[stage - 1]) if stage else 0.0
+                return self._locate(step, before, float(step.nodes[stage]))
+            self._keep(step, stage, polygon)
+            stage = self._next_suspect(step, stage + 1)
         return None
 
-    def _may_have_crossed(self, step: Step, stage: int) -> bool:
-        """Whether some point has moved too far since the shape was last found simple."""
-        return self._safe <= 0 or np.abs(step.fields.position[:, stage] - self._reference).max() >= self._safe
+    def _next_suspect(self, step: Step, first: int) -> int | None:
+        """The first stage from this one on at which some point has moved too far since the shape was found simple."""
+        if self._safe <= 0:
+            return first if first < len(step.nodes) else None
+        moved = step.fields.position[:, first:] - self._reference[:, None]
+        moved *= moved
+        too_far = np.flatnonzero((moved[0] + moved[1]).max(axis=(1, 2), initial=0.0) >= self._safe**2)
+        return first + int(too_far[0]) if too_far.size else None
 
-    def _keep(self, step: Step, stage: int) -> None:
+    def _keep(self, step: Step, stage: int, polygon: Array) -> None:
         """Remember a simple shape and how far its points can move before it may cross.
 
-        The clearance is that of a polygon through the points of the cells, whose sides lie inside the bends by κ h²/8.
-        Strands that are not opposed now may come to be in a bend that closes, whose radius is 1/κ.
+        Both strands of a clearance move, and the sides of the polygon lie inside the bends by κ h²/8. Strands that are
+        not opposed now may come to be in a bend that closes, whose radius is 1/κ.
         """
-        position = self._reference = step.fields.position[:, stage]
-        mesh = step.start.equations.mesh
-        sharpest = float(np.abs(step.fields.moment[stage] / mesh.stiffness[:, None]).max())
-        if position[0].size <= MOST_POINTS:
-            polygon, spacing = position.reshape(2, -1), float(mesh.lengths.max()) / position.shape[-1] * 2
-        else:
-            polygon, spacing = self._located(position), LENGTH / LOCATED_POINTS
-        clearance = crossing_indicator(*polygon) - sharpest * spacing**2 / 4
-        # Both strands of a clearance move; over √2, as components are compared.
-        self._safe = max(0.0, min(clearance / 2, 1 / sharpest)) / np.sqrt(2)
+        self._reference = step.fields.position[:, stage]
+        sharpest = float(np.abs(step.fields.moment[stage] / step.start.equations.mesh.stiffness[:, None]).max())
+        clearance = least_clearance(*polygon) - sharpest * (LENGTH / WATCHED_POINTS) ** 2 / 4
+        self._safe = max(0.0, min(clearance / 2, 1 / sharpest))
 
     def _locate(self, step: Step, before: float, after: float) -> float:
+        sampler = _sampler(step.start.equations, LOCATED_POINTS)
+
+        @cache
         def clearance(fraction: float) -> float:
-            position = shapes_at(step, np.array([step.start.time + fraction * step.size])).position
-            return crossing_indicator(*self._located(position)[:, 0])
+            position = Shapes(step, np.array([step.start.time + fraction * step.size])).position
+            return crossing_indicator(*sampler(position)[:, 0])
 
         # The polygons, and the dense output and the stages, differ a little, and so may their verdicts.
         if clearance(before) <= 0:
@@ -105,10 +103,11 @@ class CrossingWatch:
     def _use(self, equations: BoxEquations) -> None:
         if equations is not self._equations:
             self._equations, self._safe = equations, 0.0
-            self._watched, self._located = (
-                Sampler(equations.mesh, equations.rule, np.linspace(0.0, LENGTH, points, endpoint=False))
-                for points in (WATCHED_POINTS, LOCATED_POINTS)
-            )
+            self._watched = _sampler(equations, WATCHED_POINTS)
+
+
+def _sampler(equations: BoxEquations, points: int) -> Sampler:
+    return Sampler(equations.mesh, equations.rule, np.linspace(0.0, LENGTH, points, endpoint=False))
 
 
 @dataclass
@@ -124,34 +123,38 @@ class AreaExtrema:
     def watch(self, step: Step, until: float | None = None) -> None:
         """Look for changes of sign of dA/dt between the stages of the step, those before ``until``."""
         quadrature = self._quadrature_on(step.start.equations)
-        rates = quadrature.area_rate(step.fields.velocity[..., :-1], (step.fields.cosine, step.fields.sine))
-        before = 0.0
-        for node, rate in zip(step.nodes, rates, strict=True):
-            sign = float(np.sign(rate))
+        rates = quadrature.area_rate(step.fields.velocity[..., :-1], step.fields.tangent)
+        before: Point | None = None
+        for after in zip(step.nodes.tolist(), rates.tolist(), strict=True):
+            sign = float((after[1] > 0) - (after[1] < 0))
             if self.sign * sign < 0:
-                self._locate(step, quadrature, (before, float(node)), np.inf if until is None else until)
+                self._locate(step, before, after, np.inf if until is None else until)
             self.sign = sign or self.sign
-            before = float(node)
+            before = after
 
     def _quadrature_on(self, equations: BoxEquations) -> Quadrature:
         if self._quadrature is None or equations is not self._equations:
             self._equations, self._quadrature = equations, Quadrature(equations.mesh, equations.rule)
         return self._quadrature
 
-    def _locate(self, step: Step, quadrature: Quadrature, between: tuple[float, float], until: float) -> None:
-        def at(fraction: float) -> tuple[float, float]:
-            shapes = shapes_at(step, np.array([step.start.time + fraction * step.size]))
-            area = quadrature.area(shapes.position[..., :-1], shapes.tangent)[0]
-            return float(quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)[0]), float(area)
+    def _locate(self, step: Step, before: Point | None, after: Point, until: float) -> None:
+        """Find the extremum between two stages, given as fraction of the step and dA/dt, or the start (None) and one.
 
-        before, after = between
-        falling = self.sign < 0
-        if at(before)[0] * at(after)[0] > 0:
-            return
-        fraction = bracketed_root(lambda f: at(f)[0], before, after, TIME_PRECISION)
+        Stages and dense output differ a little: what the latter puts just beyond a stage is found at that stage.
+        """
+        quadrature = self._quadrature_on(step.start.equations)
+
+        @cache
+        def at(fraction: float) -> tuple[float, float]:
+            shapes = Shapes(step, np.array([step.start.time + fraction * step.size]))
+            rate = quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)
+            return rate.item(), quadrature.area(shapes.position[..., :-1], shapes.tangent).item()
+
+        before = before or (0.0, at(0.0)[0])
+        fraction = root_between(lambda f: at(f)[0], before, after, TIME_PRECISION)
         time = step.start.time + fraction * step.size
         if time <= until:
-            (self.minima if falling else self.maxima).append((time, at(fraction)[1]))
+            (self.minima if self.sign < 0 else self.maxima).append((time, at(fraction)[1]))
 
     @property
     def period(self) -> float | None:

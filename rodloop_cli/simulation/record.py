@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from rodloop_cli.march.dense import Shapes, shapes_at
+from rodloop_cli.march.dense import Shapes
 from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.boxes import BoxEquations
@@ -21,6 +21,9 @@ Row = dict[str, float | Array]
 
 ROUND_OFF = 1e-12
 """Of the time: the sum of the steps must not miss a stored time by this much."""
+
+TURNS = np.array([0.0] * 7 + [LENGTH])[:, None, None]
+"""What the sampled quantities gain round the loop: θ alone, the last one, does not come back to where it was."""
 
 
 def output_points(count: int) -> Array:
@@ -46,7 +49,7 @@ class Recorder:
         """The row at t = 0 if it is asked for, from the negligible step that gave the forces there."""
         self.begun = True
         self._use(step.start.equations)
-        rows = list(self._rows(step, shapes_at(step, np.array([step.start.time])), size=0.0, iterations=0))
+        rows = list(self._rows(step, Shapes(step, np.array([step.start.time])), size=0.0, iterations=0))
         if self._times[0] <= 0:
             self._next = 1
             yield from rows
@@ -66,7 +69,7 @@ class Recorder:
             times = np.append(self._times[self._next : due], stopped)
         self._next = due
         if len(times):
-            for row in self._rows(step, shapes_at(step, times), step.size, step.newton_iterations):
+            for row in self._rows(step, Shapes(step, times), step.size, step.newton_iterations):
                 yield row | {"crossing": self._crossing(row, crossed)}
         self.account.close(step, self._quadrature)
 
@@ -104,9 +107,8 @@ class Recorder:
     def _profiles(self, shapes: Shapes) -> dict[str, Array]:
         """(k, S) of every profile."""
         sample = self._sampler
-        vectors = np.concatenate([shapes.position, shapes.velocity, shapes.force, shapes.moment[None]])
-        x, y, u, v, fx, fy, moment = sample(vectors)
-        theta = sample(shapes.theta, LENGTH)
+        quantities = (shapes.position, shapes.velocity, shapes.force, shapes.moment[None], shapes.theta[None])
+        x, y, u, v, fx, fy, moment, theta = sample(np.concatenate(quantities), TURNS)
         cosine, sine = np.cos(theta), np.sin(theta)
         return {
             "x": x,

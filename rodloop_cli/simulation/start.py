@@ -1,6 +1,8 @@
 """From a case to the loop at t = 0, on a mesh that resolves it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from math import ceil, sqrt
 
 import numpy as np
@@ -109,15 +111,16 @@ def fastest_time(load: Load, rod: Rod) -> float:
 
 def _resolved(case: Case, rod: Rod, load: Load, rule: GaussRule, waves: tuple[Wave, ...]) -> tuple[Mesh, np.ndarray]:
     """A mesh on which the perturbed equilibrium is resolved to the tolerance, and the shape on it."""
+    shape_on = _shapes(rod, rule, waves)
     if case.N is not None:
         mesh = Mesh.on(rod, cells_by_length(rod, case.N))
-        return mesh, _shape_on(mesh, rod, rule, waves)
+        return mesh, shape_on(mesh)
     assert case.tol is not None
     moving = [abs(w.amplitude) for w in waves if w.amplitude]
     allowed = max(ROUND_OFF, SHARE * case.tol * min(1.0, max(moving, default=1.0)))
     mesh = Mesh.on(rod, tuple(_first_cells(s, load, len(rod.segments), rule.m) for s in rod.segments))
     while True:
-        unknowns = _shape_on(mesh, rod, rule, waves)
+        unknowns = shape_on(mesh)
         equations = BoxEquations(mesh, rule, load)
         flagged = np.maximum(unresolved(equations, unknowns), _kinked(equations, unknowns)) > allowed
         if not flagged.any() or mesh.cells + flagged.sum() > MOST_START_CELLS:
@@ -131,13 +134,21 @@ def _kinked(equations: BoxEquations, unknowns: np.ndarray) -> np.ndarray:
     A perturbation of a loop with kinks of curvature leaves such jumps on the junctions of stiffness, which the motion
     takes away at once, in bending waves as short as the cells.
     """
-    mesh, rule = equations.mesh, equations.rule
-    ends = lagrange_derivative(rule.points, np.array([0.0, 1.0]))
-    moment = (unknowns[:, NODAL:] @ ends.T) * (mesh.stiffness / mesh.lengths)[:, None]
-    jump = np.abs(moment[:, 0] - np.roll(moment[:, 1], 1))
-    jump[mesh.stiffness == np.roll(mesh.stiffness, 1)] = 0.0
+    mesh = equations.mesh
+    junctions = mesh.stiffness != np.roll(mesh.stiffness, 1)
+    if not junctions.any():
+        return np.zeros(mesh.cells)
+    slopes = unknowns[:, NODAL:] @ _end_slopes(equations.rule.m)
+    moment = slopes * (mesh.stiffness / mesh.lengths)[:, None]
+    jump = np.abs(moment[:, 0] - np.roll(moment[:, 1], 1)) * junctions
     kinked: np.ndarray = np.maximum(jump, np.roll(jump, -1)) * mesh.lengths**2 / mesh.stiffness
     return KINK_ERROR * kinked
+
+
+@cache
+def _end_slopes(m: int) -> np.ndarray:
+    """(m, 2): derivatives at both ends of the unit cell, from values at its Gauss points."""
+    return lagrange_derivative(gauss_rule(m).points, np.array([0.0, 1.0])).T
 
 
 def _first_cells(segment: Segment, load: Load, segments: int, points: int) -> int:
@@ -147,10 +158,14 @@ def _first_cells(segment: Segment, load: Load, segments: int, points: int) -> in
     return max(1 if segments > 1 else 2, ceil(cells))
 
 
-def _shape_on(mesh: Mesh, rod: Rod, rule: GaussRule, waves: tuple[Wave, ...]) -> np.ndarray:
+def _shapes(rod: Rod, rule: GaussRule, waves: tuple[Wave, ...]) -> Callable[[Mesh], np.ndarray]:
+    """The perturbed equilibrium on any mesh."""
     if not rod.has_stiffness_contrast:
-        return laid_on(perturbed(circle(), waves, rod), mesh, rule)
-    unknowns = unloaded(mesh, rule)
-    if not waves:
-        return unknowns
-    return laid_on(perturbed(as_shape(mesh, rule, unknowns), waves, rod), mesh, rule)
+        shape = perturbed(circle(), waves, rod)
+        return lambda mesh: laid_on(shape, mesh, rule)
+
+    def on(mesh: Mesh) -> np.ndarray:
+        unknowns = unloaded(mesh, rule)
+        return laid_on(perturbed(as_shape(mesh, rule, unknowns), waves, rod), mesh, rule) if waves else unknowns
+
+    return on

@@ -26,6 +26,7 @@ WEAKEST_HOLD = 1e-6
 CONVERGED = 1e-12
 STALLED = 1e-7
 """Corrections of the angles below this that no longer shrink are round-off: 1e-8 at a stiffness ratio of 10³."""
+SHRINKING = 0.5
 
 MOST_STEPS = 200
 
@@ -42,11 +43,20 @@ def relax(equations: BoxEquations, unknowns: Array) -> Array:
         size = float(np.abs(correction[:, NODAL:]).max())
         unknowns = unknowns + min(1.0, LARGEST_TURN / max(size, 1e-300)) * correction
         position = equations.shape(unknowns[None])[1]
-        # Round-off is reached when a tiny correction no longer shrinks.
-        if size < CONVERGED or (size < STALLED and size > 0.5 * before):
+        if _at_rest(size, before):
             return unknowns
         hold, before = max(WEAKEST_HOLD, hold * min(1.0, size)), size
     raise ConvergenceError(f"no equilibrium found in {MOST_STEPS} steps at p = {equations.load.p:g}")
+
+
+def _at_rest(size: float, before: float) -> bool:
+    """Whether the next correction would be negligible, if it shrinks at least like this one, or this one is round-off,
+    tiny but not shrinking.
+    """
+    if size < CONVERGED or before == np.inf:
+        return size < CONVERGED
+    shrinking = size / before
+    return size * shrinking < CONVERGED or (size < STALLED and shrinking > SHRINKING)
 
 
 def _held_correction(equations: BoxEquations, unknowns: Array, position: Array, hold: float) -> Array:
@@ -55,7 +65,7 @@ def _held_correction(equations: BoxEquations, unknowns: Array, position: Array, 
     fields = equations.fields(unknowns[None], Motion(np.array([[rate]]), -rate * position, still))
     residual = equations.residual(unknowns[None], fields)[0]
     parts = equations.linearise(fields.cosine[0], fields.sine[0], fields.force[:, 0, :, :-1], still[:, 0, :, :-1])
-    systems = CondensedSystems((parts[0] + hold * parts[1])[None].astype(complex), NODAL)
+    systems = CondensedSystems((parts[0] + hold * parts[1])[None], NODAL)
     return np.asarray(systems.solve_real(residual))
 
 
@@ -76,23 +86,22 @@ def as_shape(mesh: Mesh, rule: GaussRule, unknowns: Array) -> Shape:
     equations = BoxEquations(mesh, rule, Load(p=0.0))
     fields = equations.fields(unknowns[None], None)
     theta = np.concatenate([unknowns[:, NODAL:], fields.theta[0, :, -1:]], axis=1)
+    values, turns = np.stack([theta, fields.moment[0]]), np.array([[LENGTH], [0.0]])
 
-    def at(s: Array, values: Array, turn: float) -> Array:
-        return Sampler(mesh, rule, np.ravel(s))(values, turn).reshape(np.shape(s))
+    def along(s: Array) -> tuple[Array, Array]:
+        sample = Sampler(mesh, rule, np.ravel(s))
+        angle, moment = sample(values, turns)
+        return angle.reshape(s.shape), (moment / sample.stiffness).reshape(s.shape)
 
-    def curvature(s: Array) -> Array:
-        stiffness = Sampler(mesh, rule, np.ravel(s)).stiffness.reshape(np.shape(s))
-        return at(s, fields.moment[0], 0.0) / stiffness
-
-    return Shape(lambda s: at(s, theta, LENGTH), curvature, mesh.edges, np.zeros(2))
+    return Shape(along, mesh.edges, np.zeros(2))
 
 
 def laid_on(shape: Shape, mesh: Mesh, rule: GaussRule) -> Array:
     """(n, 6 + m): unknowns that follow the shape, closed to round-off; the forces are zero."""
     equations = BoxEquations(mesh, rule, Load(p=0.0))
+    theta, curvature = shape.along(mesh.points(np.append(0.0, rule.points)))
     unknowns = np.zeros((mesh.cells, NODAL + rule.m))
-    unknowns[:, THETA] = shape.theta(mesh.edges[:-1])
-    unknowns[:, NODAL:] = shape.theta(mesh.points(rule.points))
-    unknowns[:, MOMENT] = mesh.stiffness * shape.curvature(mesh.edges[:-1])
+    unknowns[:, THETA], unknowns[:, NODAL:] = theta[:, 0], theta[:, 1:]
+    unknowns[:, MOMENT] = mesh.stiffness * curvature[:, 0]
     Closure(equations).position(unknowns, shape.centre)
     return unknowns

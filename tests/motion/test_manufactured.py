@@ -90,7 +90,7 @@ def test_order_2m_in_the_cell_length(m, cells, bounds):
 @pytest.mark.parametrize(
     ("stages", "steps", "bounds"),
     [
-        (3, (56, 84), {"position": 1e-10, "velocity": 8e-7, "acceleration": 9e-4, "force": 9e-4}),
+        (3, (48, 72), {"position": 1.5e-10, "velocity": 1e-6, "acceleration": 1.1e-3, "force": 1.1e-3}),
         (5, (40, 60), {"velocity": 8e-10, "acceleration": 2e-6, "force": 2e-6}),
         (7, (12, 18), {"velocity": 6e-10}),
     ],

@@ -13,7 +13,7 @@ from rodloop_cli.numerics.control import (
     Controller,
     settle_on,
 )
-from rodloop_cli.numerics.roots import MOST_EVALUATIONS, bracketed_root
+from rodloop_cli.numerics.roots import MOST_EVALUATIONS, bracketed_root, root_between
 
 ERRORS = st.floats(1e-12, 1e12)
 SIZES = st.floats(1e-6, 1e2)
@@ -105,3 +105,10 @@ def test_any_jump_is_bracketed_in_few_evaluations(where, low, high):
 def test_an_exact_zero_ends_the_search():
     assert bracketed_root(lambda x: x - 0.5, 0.0, 1.0, 1e-12) == pytest.approx(0.5, abs=1e-12)
     assert bracketed_root(lambda x: x - 1.0, 0.0, 1.0, 1e-12) == 1.0
+
+
+@pytest.mark.parametrize("root", [-1e-7, 1 + 1e-7])
+def test_a_root_just_beyond_an_end_is_found_at_that_end(root):
+    found = root_between(lambda x: np.expm1(x - root), (0.0, -0.6), (1.0, 0.9), 1e-9)
+    assert found == pytest.approx(root, abs=2e-7)
+    assert 0 <= found <= 1

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from rodloop_cli.physics.clearance import crossing_indicator
+from rodloop_cli.physics.clearance import crossing_indicator, least_clearance
 from rodloop_cli.physics.crossing import crosses_itself, find_crossings
 
 
@@ -106,6 +106,16 @@ def test_a_root_finder_gets_the_contact_in_few_steps(shape):
 def test_the_contact_is_as_accurate_as_chords_are(size):
     contact = brentq(lambda width: crossing_indicator(*peanut(width, size)), 0.1, -0.1, xtol=1e-10)
     assert abs(contact) < 10.0 / size**2
+
+
+@pytest.mark.parametrize("shape", [peanut, horseshoe])
+@pytest.mark.parametrize("size", [40, 128, 400])
+def test_the_bound_of_the_clearance_is_below_it_and_close(shape, size):
+    for width in (0.4, 0.1, 0.02):
+        x, y = shape(width, size)
+        bound, clearance = least_clearance(x, y), crossing_indicator(x, y)
+        assert bound <= clearance
+        assert bound > 0.9 * clearance or clearance < 2 * np.hypot(np.diff(x), np.diff(y)).max()
 
 
 def test_depth_of_a_known_overlap():
