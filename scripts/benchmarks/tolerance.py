@@ -3,7 +3,7 @@
 The error is the largest distance between the stored positions of a run and of the same run at tol/1000, up to the
 first crossing, after the rigid motion between the two shapes is taken out.
 
-    python -m scripts.benchmarks.tolerance [--random N] [--tols 1e-3,1e-4,…]
+    python -m scripts.benchmarks.tolerance [--random N] [--jumping N] [--tols 1e-3,1e-4,…]
 """
 
 import argparse
@@ -87,6 +87,20 @@ def random_cases(count: int, seed: int = 20260614) -> Iterator[tuple[str, dict[s
         yield f"random {i}", case
 
 
+def jumping_cases(count: int, seed: int = 1020) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Perturbed loops of stiffness ratio 2 to 20: their moment jumps at the junctions from the start."""
+    for i in range(count):
+        generator = np.random.default_rng(seed + i)
+        ratio = float(np.exp(generator.uniform(np.log(2), np.log(20))))
+        amplitude = float(10 ** generator.uniform(-3, np.log10(0.05)))
+        p = float(np.exp(generator.uniform(np.log(4), np.log(50))))
+        k = float(generator.uniform(0.3, 0.7))
+        mode, phase = int(generator.integers(2, 6)), float(generator.uniform(0, 6.28))
+        wave = ModePerturbation(mode=mode, amplitude=amplitude, phase=phase)
+        case = {"p": p, "stiffness_ratio": ratio, "k": k, "t_end": 3.0 / (1 + p) ** 0.75, "perturbation": (wave,)}
+        yield f"jumping {i}, ε = {amplitude:.0e}", case
+
+
 def solve(case: dict[str, Any], tol: float) -> Positions:
     """One run."""
     positions = Positions()
@@ -114,6 +128,7 @@ def main() -> None:
     """Print a table of error/tol and of the energy residual relative to the largest energy change."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--random", type=int, default=10)
+    parser.add_argument("--jumping", type=int, default=0, help="this many loops with a jump of the moment")
     parser.add_argument("--tols", default="1e-3,1e-4,1e-5,1e-6")
     parser.add_argument("--tighter", type=float, default=TIGHTER, help="tolerance of the reference, over tol")
     parser.add_argument("--no-references", action="store_true", help="the random cases alone")
@@ -121,7 +136,7 @@ def main() -> None:
     options = parser.parse_args()
     known = [] if options.no_references else list(REFERENCES.items())
     rows = []
-    for name, case in [*known, *random_cases(options.random)]:
+    for name, case in [*known, *random_cases(options.random), *jumping_cases(options.jumping)]:
         for tol in map(float, options.tols.split(",")):
             run = solve(case, tol)
             ratio = error(run, solve(case, tol * options.tighter)) / tol
