@@ -45,6 +45,14 @@ def test_a_perturbed_loop_with_kinks_runs_to_a_tight_tolerance(ratio):
     assert trial.residual < 0.02
 
 
+def test_short_cells_beside_long_ones_leave_newton_its_digits():
+    """With 20 points in a cell the linear systems were so ill-conditioned that corrections stalled at 1e-10."""
+    case = {"p": 8.3, "stiffness_ratio": 2.42, "t_end": 3e-5, "tol": 1e-7, **ROWS}
+    trial, _ = attempt(case | {"perturbation": [{"mode": 5, "amplitude": 0.038}]}, 20)
+    assert trial.kind == "end"
+    assert trial.work["newton_failures"] == 0
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_random_case_ends_or_says_why(seed):
     trial = one(seed, 20, compare=False)
