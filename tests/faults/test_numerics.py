@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from rodloop_cli import Case, simulate
+from rodloop_cli.physics.rod import Segment
 from rodloop_cli.simulation import Run
+from rodloop_cli.simulation.amplification import SUSPICIOUS, Amplification, growth_rate
+from scripts.stress.cases import random_case
 from scripts.stress.random_cases import one
-from scripts.stress.trial import attempt
+from scripts.stress.trial import Rows, attempt
 
 ROWS = {"snapshots": 3, "output_points": 32}
 
@@ -72,3 +75,46 @@ def test_a_jump_of_the_moment_on_coarse_cells_starts_with_a_longer_step(ratio):
     case = {"p": 1.0, "stiffness_ratio": ratio, "scheme": "bdf2", "N": 100, "dt": 0.018, "t_end": 0.09, **ROWS}
     trial, _ = attempt(case | {"perturbation": [{"mode": 2, "amplitude": 5e-3}]}, 20)
     assert trial.kind == "end"
+
+
+def test_a_run_that_buckles_out_of_its_errors_says_so():
+    """Its soft segment has p/b = 13 600: waves of mode 80 grow, and it is 58 tol off."""
+    run = Run.of(Case(**random_case(890)))
+    rows = Rows()
+    run.into(rows)
+    assert run.summary.amplification.excess > SUSPICIOUS
+    assert run.summary.warning in rows.attributes["warning"]
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        {"p": 3.8, "t_end": 9.6, "perturbation": [{"mode": 2, "amplitude": 5e-3}], "tol": 1e-3},
+        {"p": 64.0, "t_end": 0.28, "perturbation": [{"mode": 6, "amplitude": 5e-5}]},
+        {"p": 3.8, "stiffness_ratio": 5.0, "t_end": 2.25},
+        {"p": 733.0, "t_end": 0.005},
+    ],
+)
+def test_an_ordinary_run_does_not_cry_wolf(case):
+    run, rows = Run.of(Case(**case, **ROWS)), Rows()
+    run.into(rows)
+    assert "warning" not in rows.attributes
+
+
+def test_growth_is_that_of_the_dispersion_relation():
+    """Eq. (17): ω² = 57.6 for n = 3 at p = 16, the largest of all n; the fastest wave of any n is hardly faster."""
+    free = growth_rate(Segment(1.0), 0.0, 16.0)
+    assert np.sqrt(57.6) <= free < 1.01 * np.sqrt(57.6)
+    damped = growth_rate(Segment(1.0, 1.0, 2.0), 5.0, 16.0)
+    assert 2.0 * damped**2 + 5.0 * damped == pytest.approx(free**2)
+    assert growth_rate(Segment(1.0, 2.0), 0.0, 6.0) == 0.0
+
+
+def test_the_memory_of_amplification_is_all_there_is():
+    run = Run.of(Case(p=64.0, t_end=0.1, perturbation=[{"mode": 6, "amplitude": 5e-5}], **ROWS))
+    run.into(Rows())
+    seen = run.summary.amplification
+    fresh = Amplification(run.begun.rod, run.begun.load)
+    fresh.restore(seen.memory())
+    assert fresh.excess == seen.excess
+    np.testing.assert_array_equal(fresh.logarithms, seen.logarithms)
