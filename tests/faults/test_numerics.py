@@ -56,6 +56,26 @@ def test_short_cells_beside_long_ones_leave_newton_its_digits():
     assert trial.work["newton_failures"] == 0
 
 
+@pytest.mark.parametrize("seed", [531, 585])
+def test_a_failed_step_of_a_loose_run_can_be_shortened(seed):
+    """The gaps that Newton's iteration had left asked for forces of 1/Δt²: the shorter the step, the worse."""
+    trial = one(seed, 20, compare=False)
+    assert trial.kind == "end"
+
+
+def test_a_closed_state_is_inextensible_and_closed_already():
+    """What Newton's iteration leaves between cells goes away, and nothing more."""
+    case = Case(p=20.0, stiffness_ratio=5.0, t_end=0.2, tol=1e-2, **ROWS)
+    state = list(Run.of(case).marcher)[-1].end
+    closed, twice = state.closed(), state.closed().closed()
+    for name in ("unknowns", "rates", "position", "velocity"):
+        np.testing.assert_allclose(getattr(twice, name), getattr(closed, name), atol=1e-12)
+    np.testing.assert_allclose(closed.position, state.position, atol=1e-4)
+    along = np.diff(closed.position[..., -1], axis=1, prepend=closed.position[:, -1:, -1])
+    inside = np.stack([np.cos(closed.unknowns[:, 6:]), np.sin(closed.unknowns[:, 6:])]) @ state.equations.rule.weights
+    np.testing.assert_allclose(along, inside * state.equations.mesh.lengths, atol=1e-13)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_random_case_ends_or_says_why(seed):
     trial = one(seed, 20, compare=False)
