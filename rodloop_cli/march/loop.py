@@ -32,7 +32,11 @@ FAILING = 0.1
 
 TARGET_WHEN_HARD = 5e-6
 """Newton's target in a hard run is not above this. What it leaves becomes a force of that over Δt², and the steps of such
-a run are short: with 1e-4, which is what tol = 1e-2 would give, five of 290 random runs came where no step succeeds."""
+a run are short: with 1e-4, which is what tol = 1e-2 would give, five of 290 random runs came to where no step succeeds."""
+
+SHORT = 1.0
+"""Of the last step: a step that fails although it is shorter than this suffers from the gaps that the last one left.
+Closing them changes velocities by ε/Δt, and is left alone after a failure that only ends the growth of steps."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +113,9 @@ class Marcher:
         step = self.stepper.step(self.state, self.last, size, self.plan.allowance(scale), target)
         if step is None:
             self.work.newton_failures += 1
-            self.state, self.proposal = self.state.closed(), CUT_AFTER_FAILURE * size
+            self.proposal = CUT_AFTER_FAILURE * size
+            if self.last is not None and size < SHORT * self.last.size:
+                self.state = self.state.closed()
             return None
         self.proposal = self.controller.factor(size, step.error) * size
         if step.error > 1:
