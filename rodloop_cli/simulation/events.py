@@ -152,16 +152,20 @@ class AreaExtrema:
         quadrature = self._quadrature_on(step.start.equations)
 
         @cache
-        def at(fraction: float) -> tuple[float, float]:
-            shapes = Shapes(step, np.array([step.start.time + fraction * step.size]))
-            rate = quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)
-            return rate.item(), quadrature.area(shapes.position[..., :-1], shapes.tangent).item()
+        def shape(fraction: float) -> Shapes:
+            return Shapes(step, np.array([step.start.time + fraction * step.size]))
 
-        before = before or (0.0, at(0.0)[0])
-        fraction = root_between(lambda f: at(f)[0], before, after, TIME_PRECISION)
+        def rate(fraction: float) -> float:
+            at = shape(fraction)
+            return quadrature.area_rate(at.velocity[..., :-1], at.tangent).item()
+
+        before = before or (0.0, rate(0.0))
+        fraction = root_between(rate, before, after, TIME_PRECISION)
         time = step.start.time + fraction * step.size
         if time <= until:
-            (self.minima if self.sign < 0 else self.maxima).append((time, at(fraction)[1]))
+            at = shape(fraction)
+            area = quadrature.area(at.position[..., :-1], at.tangent).item()
+            (self.minima if self.sign < 0 else self.maxima).append((time, area))
 
     @property
     def period(self) -> float | None:
