@@ -24,6 +24,7 @@ import numpy.typing as npt
 from rodloop_cli.physics.lobes import find_lobes
 
 Array = npt.NDArray[np.float64]
+Places = npt.NDArray[np.intp]
 
 DEVELOPED = 0.2
 """Range of the radial displacement, over R, from which on the lobes of a shape can be seen."""
@@ -82,11 +83,11 @@ class LobeWatch:
     _points: int = 1
     _seen: list[int] = field(default_factory=list)
     _lost: list[_Lost] = field(default_factory=list)
-    _waiting: list[tuple[float, Array]] = field(default_factory=list)
+    _waiting: list[tuple[float, Array, Places | None]] = field(default_factory=list)
 
-    def watch(self, time: float, curvature: Array) -> None:
-        """Take the next shape; ``curvature`` [S] as for `find_lobes`."""
-        self._waiting.append((time, curvature))
+    def watch(self, time: float, curvature: Array, tops: Places | None = None) -> None:
+        """Take the next shape; ``curvature`` [S] as for `find_lobes`, and what that found if it is at hand."""
+        self._waiting.append((time, curvature, tops))
         if len(self._waiting) * len(curvature) >= TOGETHER:
             self._follow_waiting()
 
@@ -94,13 +95,12 @@ class LobeWatch:
         if not self._waiting:
             return
         waiting, self._waiting = self._waiting, []
-        ranges = radial_range(np.array([curvature for _, curvature in waiting]))
-        for (time, curvature), seen in zip(waiting, (ranges >= DEVELOPED).tolist(), strict=True):
+        ranges = radial_range(np.array([curvature for _, curvature, _ in waiting]))
+        for (time, curvature, tops), seen in zip(waiting, (ranges >= DEVELOPED).tolist(), strict=True):
             if seen:
-                self._follow(time, curvature)
+                self._follow(time, curvature, (find_lobes(curvature) if tops is None else tops).tolist())
 
-    def _follow(self, time: float, curvature: Array) -> None:
-        tops: list[int] = find_lobes(curvature).tolist()
+    def _follow(self, time: float, curvature: Array, tops: list[int]) -> None:
         self._points = len(curvature)
         reach = self._points / (2 * max(len(tops), len(self._seen), 1))
         missing, new = _unmatched(self._seen, tops, reach, self._points)

@@ -160,7 +160,7 @@ class AreaExtrema:
             return quadrature.area_rate(at.velocity[..., :-1], at.tangent).item()
 
         before = before or (0.0, rate(0.0))
-        fraction = root_between(rate, before, after, TIME_PRECISION)
+        fraction = root_between(rate, before, after, TIME_PRECISION, smooth=True)
         time = step.start.time + fraction * step.size
         if time <= until:
             at = shape(fraction)

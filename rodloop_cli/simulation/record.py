@@ -13,7 +13,6 @@ from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.crossing import crosses_itself
 from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.equations import Load
-from rodloop_cli.physics.lobes import count_lobes
 from rodloop_cli.physics.rod import LENGTH, Rod
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.simulation.account import EnergyAccount
@@ -33,7 +32,7 @@ def output_points(count: int) -> Array:
 
 
 class Recorder:
-    """Rows at the stored times."""
+    """Rows at the stored times; the lobes are for whoever follows them to add."""
 
     def __init__(self, rod: Rod, load: Load, points: int, times: tuple[float, ...]) -> None:
         self.s = output_points(points)
@@ -103,9 +102,7 @@ class Recorder:
         energies = self.account.at(step, shapes, self._quadrature)
         for i, (time, row) in enumerate(zip(shapes.times.tolist(), energies, strict=True)):
             curves = {name: values[i] for name, values in profiles.items()}
-            lobes = count_lobes(curves["curvature"])
-            known = {"t": time, "step_size": size, "newton_iterations": iterations, "crossing": 0, "lobes": lobes}
-            yield curves | row | known
+            yield curves | row | {"t": time, "step_size": size, "newton_iterations": iterations, "crossing": 0}
 
     def _profiles(self, shapes: Shapes) -> dict[str, Array]:
         """(k, S) of every profile."""
