@@ -18,6 +18,7 @@ from rodloop_cli.march.refine import Refiner
 from rodloop_cli.march.state import Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.physics.lobes import find_lobes
 from rodloop_cli.simulation.events import CrossingWatch, RestWatch
 from rodloop_cli.simulation.record import Recorder, Row
 from rodloop_cli.simulation.start import STARTING_TIME, Start, fastest_time, start
@@ -134,9 +135,12 @@ class Run:
             self.summary.lobes.watch(time, curvature)
 
     def _store(self, row: Row, sink: RowSink) -> None:
+        curvature = np.asarray(row["curvature"])
+        tops = find_lobes(curvature)
+        row["lobes"] = len(tops)
         sink.append(row)
         if not row["crossing"]:
-            self.summary.lobes.watch(float(row["t"]), np.asarray(row["curvature"]))
+            self.summary.lobes.watch(float(row["t"]), curvature, tops)
 
     def _finish(self, sink: RowSink) -> None:
         account, summary = self.recorder.account, self.summary
