@@ -91,6 +91,8 @@ def told(summary: Summary) -> list[str]:
     lines.append(f"energy residual {summary.energy_residual:.1e}, {share:.1e} of the largest change")
     if share > LARGE_SHARE and summary.energy_residual > ROUND_OFF:
         lines.append("warning: much of the energy is lost to the steps; try a tighter tol (bdf2: a smaller dt, more N)")
+    if summary.warning:
+        lines.append(f"warning: {summary.warning}")
     lines.append(
         f"{work.steps} steps ({work.rejected} rejected, {work.newton_failures} failed), {summary.cells} cells, "
         f"{summary.seconds:.2f} s"

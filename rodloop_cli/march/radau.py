@@ -56,8 +56,13 @@ class RadauStepper:
             return None
         return self.linearisation.step
 
-    def step(self, state: State, last: Past | None, size: float, allowance: float) -> Step | None:
-        """A step of length ``size`` whose ``error`` is measured against ``allowance``; None if Newton fails."""
+    def step(
+        self, state: State, last: Past | None, size: float, allowance: float, most_target: float = np.inf
+    ) -> Step | None:
+        """A step of length ``size`` whose ``error`` is measured against ``allowance``; None if Newton fails.
+
+        ``most_target`` bounds Newton's share of it.
+        """
         method, equations = self.method, self._form(state.equations)
         motion = _motion(method, state, size)
         guess = predict(state, last, method.nodes, size)
@@ -74,7 +79,7 @@ class RadauStepper:
                 guess,
                 self._kept(equations, size),
                 renew,
-                max(LEAST_TARGET, self._iteration_error * allowance),
+                max(LEAST_TARGET, min(most_target, self._iteration_error * allowance)),
             )
         except SingularSystem:
             solution, self.linearisation = None, None

@@ -1,11 +1,12 @@
 """What passes between time steps: the state of the loop, and one accepted step."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.boxes import BoxEquations
+from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.equations import Fields
 
 
@@ -34,6 +35,17 @@ class State:
         return cls(
             time, equations, unknowns, np.zeros_like(unknowns), fields.position[:, 0], still, still, fields.force[:, 0]
         )
+
+    def closed(self) -> "State":
+        """The same with positions and velocities integrated anew from the angles and their rates.
+
+        Newton's iteration leaves gaps between the cells, smaller than its target ε. The next step closes them, with
+        forces of ε/Δt²: a step that failed would fail the more the shorter it is made.
+        """
+        unknowns, rates, closure = self.unknowns.copy(), self.rates.copy(), Closure(self.equations)
+        position = closure.position(unknowns, closure.centre(self.position))
+        velocity = closure.velocity(unknowns, rates, closure.centre(self.velocity))
+        return replace(self, unknowns=unknowns, rates=rates, position=position, velocity=velocity)
 
 
 @dataclass(frozen=True, eq=False)

@@ -88,6 +88,7 @@ def resumed(output: Path, run: Run) -> int:
     for name, value in zip(names, arrays["work"], strict=True):
         setattr(run.work, name, int(value))
     run.recorder.restore(arrays["recorder"])
+    run.summary.amplification.restore(arrays["amplification"])
     extrema = run.summary.extrema
     extrema.minima = [(float(t), float(a)) for t, a in arrays["minima"]]
     extrema.maxima = [(float(t), float(a)) for t, a in arrays["maxima"]]
@@ -103,6 +104,7 @@ def packed(run: Run, rows: int) -> Arrays:
     return pack(run.marcher) | {
         "work": np.array(list(asdict(run.work).values()), dtype=float),
         "recorder": run.recorder.memory(),
+        "amplification": summary.amplification.memory(),
         "minima": np.array(summary.extrema.minima).reshape(-1, 2),
         "maxima": np.array(summary.extrema.maxima).reshape(-1, 2),
         "summary": np.array([summary.extrema.sign, crossing, summary.seconds]),

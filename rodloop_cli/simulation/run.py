@@ -19,6 +19,7 @@ from rodloop_cli.march.state import Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.lobes import find_lobes
+from rodloop_cli.simulation.amplification import Amplification
 from rodloop_cli.simulation.events import CrossingWatch, RestWatch
 from rodloop_cli.simulation.record import Recorder, Row
 from rodloop_cli.simulation.start import STARTING_TIME, Start, fastest_time, start
@@ -65,7 +66,8 @@ class Run:
         begun = start(case)
         work = Work()
         recorder = Recorder(begun.rod, begun.load, case.output_points, case.times)
-        return cls(case, begun, _marcher(case, begun, work), recorder, Summary(work))
+        summary = Summary(work, Amplification(begun.rod, begun.load))
+        return cls(case, begun, _marcher(case, begun, work), recorder, summary)
 
     @property
     def work(self) -> Work:
@@ -120,6 +122,9 @@ class Run:
         """Store what is due in a step; the time at which the run is to stop, if it is."""
         summary = self.summary
         summary.cells = step.start.equations.mesh.cells
+        if isinstance(self.marcher, Marcher):
+            departure = self.begun.departure
+            summary.amplification.watch(step, departure.of(step.end, self.marcher.base) / departure.scale)
         if summary.first_crossing is None:
             summary.first_crossing = crossing.first_in(step)
         stopped = summary.first_crossing if "crossing" in self.case.stop_at else None
@@ -146,7 +151,9 @@ class Run:
         account, summary = self.recorder.account, self.summary
         summary.energy_residual, summary.energy_change = account.largest_residual, account.largest_change
         outcome = outcome_attributes(summary.outcome, summary.totals)
-        sink.finish(outcome | summary.findings | summary.lobe_events)
+        warnings = [text for text in (self.warning, summary.warning) if text]
+        warned: dict[str, Attribute] = {"warning": ". ".join(warnings)} if warnings else {}
+        sink.finish(outcome | summary.findings | summary.lobe_events | warned)
 
 
 def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:

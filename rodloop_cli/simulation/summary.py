@@ -8,7 +8,13 @@ import numpy as np
 from rodloop_cli.dataset.variables import LOBE_EVENT_ARCLENGTHS, LOBE_EVENT_FATES, LOBE_EVENT_TIMES, Attribute
 from rodloop_cli.march.work import Work
 from rodloop_cli.physics.lobe_events import LobeWatch
+from rodloop_cli.simulation.amplification import SUSPICIOUS, Amplification
 from rodloop_cli.simulation.events import AreaExtrema
+
+AMPLIFIED = (
+    "a segment is compressed so far beyond its buckling load that waves grew {excess:.0e} times as much as the motion, "
+    "out of errors too: shapes may be off by many tol; compare with tol/100, or perturb the modes that are to grow"
+)
 
 
 @dataclass
@@ -16,6 +22,7 @@ class Summary:
     """Filled in while the run goes on."""
 
     work: Work
+    amplification: Amplification
     extrema: AreaExtrema = field(default_factory=AreaExtrema)
     lobes: LobeWatch = field(default_factory=LobeWatch)
     outcome: str = ""
@@ -36,6 +43,12 @@ class Summary:
     def totals(self) -> dict[str, int | float]:
         """Counters for the file."""
         return {**asdict(self.work), "cells": self.cells, "wall_seconds": self.seconds}
+
+    @property
+    def warning(self) -> str:
+        """What the run has shown of its own accuracy; empty if nothing."""
+        excess = self.amplification.excess
+        return AMPLIFIED.format(excess=excess) if excess > SUSPICIOUS else ""
 
     @property
     def findings(self) -> dict[str, int | float]:
