@@ -35,8 +35,9 @@ FAILING = 0.1
 """Newton failures in a step from which a run is hard."""
 
 TARGET_WHEN_HARD = 5e-6
-"""Newton's target in a hard run is not above this. What it leaves becomes a force of that over Δt², and the steps of such
-a run are short: with 1e-4, which is what tol = 1e-2 would give, five of 290 random runs came where no step succeeds."""
+"""Newton's target in a hard run is not above this. What it leaves becomes a force of that over Δt², and the steps of
+such a run are short: with 1e-4, which is what tol = 1e-2 would give, five of 290 random runs came where no step
+succeeds."""
 
 
 @dataclass(frozen=True)

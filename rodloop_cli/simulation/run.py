@@ -28,8 +28,9 @@ from rodloop_cli.simulation.summary import Summary
 Progress = Callable[[float], None]
 """Told the time reached, after every step."""
 
-FIRST_STEP = 100.0
-"""First step proposed, in units of the starting step: the impulsive start is met with short steps."""
+FIRST_STEP, FIRST_STEP_WITHOUT_JUNCTIONS = 100.0, 3000.0
+"""First step proposed, in units of the starting step. Junctions of stiffness meet the load with waves of every length,
+and need short ones."""
 
 REST = 1e-6
 """Distance from an equilibrium at which a run of fixed steps has settled."""
@@ -161,7 +162,8 @@ def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:
         assert case.dt is not None
         return FixedMarcher(begun.state, case.t_end, case.dt, work)
     assert case.tol is not None
-    first = FIRST_STEP * STARTING_TIME * fastest_time(begun.load, begun.rod)
+    first = FIRST_STEP if begun.rod.has_stiffness_contrast else FIRST_STEP_WITHOUT_JUNCTIONS
+    first *= STARTING_TIME * fastest_time(begun.load, begun.rod)
     longest = case.dt or case.t_end
     plan = Plan(case.t_end, case.tol, stages_for(case.tol), longest, min(first, longest))
     return Marcher(begun.state, plan, Refiner(fixed=case.N is not None), begun.departure, work)
