@@ -13,7 +13,7 @@ from rodloop_cli.march.predictor import Past, predict
 from rodloop_cli.march.stages import Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
-from rodloop_cli.physics.equations import NODAL, Fields, Instant, Motion
+from rodloop_cli.physics.equations import NODAL, Iterate, Motion
 
 NEWTON_TARGET = 1e-10
 """Position error at which Newton stops: far below the scheme's own error, above round-off amplified by Δt⁻²."""
@@ -67,9 +67,9 @@ class FixedMarcher:
         motion = _motion(weights, size, state, before)
         modes = StageModes(np.array([weights[0] + 0j]), SINGLE, SINGLE)
 
-        def renew(fields: Fields, trusted: bool) -> Linearisation:
+        def renew(iterate: Iterate, trusted: bool) -> Linearisation:
             self.work.factorizations += 1
-            instant = Instant.of_stage(fields, 0, None if trusted else state.force)
+            instant = iterate.instant(0, None if trusted else state.force)
             return Linearisation(state.equations, modes, size, instant)
 
         guess = predict(state, self.last, END, size)

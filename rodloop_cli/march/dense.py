@@ -5,13 +5,14 @@ stages' own; velocities are that polynomial; forces and moments interpolate the 
 at the start being of lower order.
 """
 
-from functools import cached_property
+from functools import cache, cached_property
+from typing import Self
 
 import numpy as np
 
 from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array
-from rodloop_cli.numerics.interpolation import interpolation, series
+from rodloop_cli.numerics.interpolation import StepWeights, step_weights
 from rodloop_cli.physics.equations import NODAL, THETA
 
 
@@ -21,85 +22,75 @@ class Shapes:
     Whatever is not asked for is not computed.
     """
 
-    def __init__(self, step: Step, times: Array) -> None:
-        self.times = times
-        self._step = step
-        self._series = series(fractions(step, times), len(step.nodes) + 2)
-        nodes = tuple(step.nodes.tolist())
-        self._by_stages, self._by_rates = interpolation(nodes), interpolation((0.0, *nodes))
+    def __init__(self, step: Step, times: Array, weights: StepWeights | None = None) -> None:
+        """``weights``: those at the times, if they are at hand."""
+        self._step, self.times = step, times
+        self._weights = weights or step_weights(tuple(step.nodes.tolist()), fractions(step, times))
 
-    @property
+    @classmethod
+    def inside(cls, step: Step, places: tuple[float, ...]) -> Self:
+        """At ``places`` (k,) that are the same in every step, from its start (0) to its end (1)."""
+        weights = _kept_weights(tuple(step.nodes.tolist()), places)
+        return cls(step, step.start.time + step.size * np.array(places), weights)
+
+    @cached_property
     def tangent(self) -> Array:
-        """(2, k, n, m) at the Gauss points alone."""
-        return self._shape[0]
+        """(2, k, n, m) at the Gauss points alone; does not need the positions."""
+        angles = self._moved[..., NODAL:]
+        tangent = np.empty((2, *angles.shape))
+        np.cos(angles, out=tangent[0])
+        np.sin(angles, out=tangent[1])
+        return tangent
 
-    @property
+    @cached_property
     def position(self) -> Array:
         """(2, k, n, m + 1)."""
-        return self._shape[1]
+        return self._step.start.equations.shape(self._moved)[1]
 
     @cached_property
     def theta(self) -> Array:
         """(k, n, m + 1)."""
-        angles, nodal = self._moved[..., NODAL:], self._moved[..., THETA]
-        theta = np.empty((*angles.shape[:-1], angles.shape[-1] + 1))
-        theta[..., :-1] = angles
-        theta[:, :-1, -1] = nodal[:, 1:]
-        theta[:, -1, -1] = nodal[:, 0] + 2 * np.pi
+        moved = self._moved
+        theta = np.empty((*moved.shape[:-1], moved.shape[-1] - NODAL + 1))
+        theta[..., :-1] = moved[..., NODAL:]
+        theta[:, :-1, -1] = moved[:, 1:, THETA]
+        theta[:, -1, -1] = moved[:, 0, THETA] + 2 * np.pi
         return theta
 
     @cached_property
     def velocity(self) -> Array:
         """(2, k, n, m + 1)."""
-        return self._from_rates(self._step.start.velocity[:, None], self._step.fields.velocity)
+        step = self._step
+        return _combined(self._weights.values, step.start.velocity, step.fields.velocity)
 
     @cached_property
     def force(self) -> Array:
         """(2, k, n, m + 1)."""
-        return _weighted(self._stage_weights, self._step.fields.force)
+        return _weighted(self._weights.stages, self._step.fields.force)
 
     @cached_property
     def moment(self) -> Array:
         """(k, n, m + 1)."""
-        moment: Array = _weighted(self._stage_weights, self._step.fields.moment[None])[0]
-        return moment
+        return _weighted(self._weights.stages, self._step.fields.moment)
 
     @cached_property
     def spin(self) -> Array:
         """θ_t (k, n, m) at the Gauss points."""
         step = self._step
-        spin: Array = self._from_rates(step.start.rates[None, None, :, NODAL:], step.rates[None, ..., NODAL:])[0]
-        return spin
-
-    @cached_property
-    def _shape(self) -> tuple[Array, Array]:
-        return self._step.start.equations.shape(self._moved)
+        return _combined(self._weights.values, step.start.rates[:, NODAL:], step.rates[..., NODAL:])
 
     @cached_property
     def _moved(self) -> Array:
         """(k, n, 6 + m): positions and angles among the unknowns; the rest has no meaning."""
         step = self._step
-        weights = self._series @ (step.size * self._by_rates.integrals)
-        moved: Array = _weighted(weights[:, 1:], step.rates[None])[0]
-        moved += weights[:, 0, None, None] * step.start.rates
+        moved = _combined(step.size * self._weights.integrals, step.start.rates, step.rates)
         moved += step.start.unknowns
         return moved
 
-    def _from_rates(self, start: Array, stages: Array) -> Array:
-        """(c, k, …): the polynomial through the values at the start (c, 1, …) and at the stages (c, s, …)."""
-        values = _weighted(self._rate_weights[:, 1:], stages)
-        values += self._rate_weights[:, 0, None, None] * start
-        return values
 
-    @cached_property
-    def _rate_weights(self) -> Array:
-        weights: Array = self._series[:, :-1] @ self._by_rates.values
-        return weights
-
-    @cached_property
-    def _stage_weights(self) -> Array:
-        weights: Array = self._series[:, :-2] @ self._by_stages.values
-        return weights
+@cache
+def _kept_weights(stages: tuple[float, ...], places: tuple[float, ...]) -> StepWeights:
+    return step_weights(stages, np.array(places))
 
 
 def fractions(step: Step, times: Array) -> Array:
@@ -107,8 +98,15 @@ def fractions(step: Step, times: Array) -> Array:
     return np.minimum(np.maximum((times - step.start.time) / step.size, 0.0), 1.0)
 
 
+def _combined(weights: Array, start: Array, stages: Array) -> Array:
+    """(…, k, n, i): sums of values at the start (…, n, i) and the stages (…, s, n, i), with weights (k, 1 + s)."""
+    sums = _weighted(weights[:, 1:], stages)
+    sums += weights[:, 0, None, None] * start[..., None, :, :]
+    return sums
+
+
 def _weighted(weights: Array, stages: Array) -> Array:
-    """(c, k, …): sums of values at the stages (c, s, …) with weights (k, s)."""
-    flat = stages.reshape(*stages.shape[:2], -1)
-    sums: Array = (weights @ flat).reshape(len(stages), len(weights), *stages.shape[2:])
+    """(…, k, n, i): sums of values at the stages (…, s, n, i) with weights (k, s)."""
+    *parts, s, cells, points = stages.shape
+    sums: Array = (weights @ stages.reshape(*parts, s, cells * points)).reshape(*parts, len(weights), cells, points)
     return sums

@@ -20,6 +20,10 @@ SMALLEST_STEP = 1e-13
 ROUND_OFF = 1e-12
 """The smallest position error that a step can be asked for."""
 
+MANY_ITERATIONS = 6
+CUT_AFTER_MANY = 0.85
+"""A step on which Newton needs as many is followed by a shorter one, which costs less than the iterations do."""
+
 LOOSEST = 1e-3
 SHARE_AT_LOOSEST = 0.6
 TIGHTENING = 0.2
@@ -118,7 +122,7 @@ class Marcher:
             if self.last is not None and size < SHORT * self.last.size:
                 self.state = self.state.closed()
             return None
-        self.proposal = self.controller.factor(size, step.error) * size
+        self.proposal = self._next(step)
         if step.error > 1:
             self.work.rejected += 1
             return None
@@ -130,6 +134,10 @@ class Marcher:
         self.work.steps += 1
         self.state, self.last = step.end, Past.of(step)
         return step
+
+    def _next(self, step: Step) -> float:
+        proposal = self.controller.factor(step.size, step.error) * step.size
+        return min(proposal, CUT_AFTER_MANY * step.size) if step.newton_iterations >= MANY_ITERATIONS else proposal
 
     def _size(self) -> float:
         """The next step to try.

@@ -48,27 +48,35 @@ def predict(state: State, last: Past | None, nodes: Array, size: float) -> Guess
     if last is None:
         unknowns = state.unknowns + (size * nodes)[:, None, None] * state.rates
         return Guess(unknowns, np.repeat(state.force[:, None], len(nodes), axis=1))
-    times = size / last.size * nodes
-    unknowns = _continued(np.concatenate([[0.0], last.nodes]), last.unknowns, times)
+    ratio = size / last.size
+    unknowns = _continued((0.0, *last.nodes.tolist()), last.unknowns, ratio, nodes)
     # The forces at the start of the last step are not those of its stages: they are the constraint's, of lower order.
-    force = _continued(last.nodes, last.force, times)
+    force = _continued(tuple(last.nodes.tolist()), last.force, ratio, nodes)
     unknowns[:, 0, FORCE], unknowns[:, 1:, FORCE] = force[..., -1, -1].T, force[..., :-1, -1].transpose(1, 2, 0)
     return Guess(unknowns, force)
 
 
-def _continued(nodes: Array, values: Array, times: Array) -> Array:
-    """Taylor polynomial about node 1 of the interpolant of ``values`` (..., nodes, n, points), at ``times``."""
+def _continued(known: tuple[float, ...], values: Array, ratio: float, nodes: Array) -> Array:
+    """Taylor polynomial about node 1 of the interpolant of ``values`` (..., known, n, points), at the ``nodes`` of a
+    step ``ratio`` times as long.
+    """
     *parts, _, cells, points = values.shape
-    coefficients = _taylor_from_samples(tuple(nodes)) @ values.reshape(*parts, len(nodes), -1)
-    largest = np.abs(coefficients).max(axis=-1).reshape(-1, len(nodes)).max(axis=0)
-    sizes = largest * times[-1] ** np.arange(len(nodes))
-    terms = min(2, len(nodes))
-    while terms < len(nodes) and sizes[terms] < SHRINKING * sizes[terms - 1]:
+    powers = ratio ** np.arange(len(known))
+    taylor = _taylor_from_samples(known) * powers[:, None]
+    coefficients = taylor @ values.reshape(*parts, len(known), -1)
+    largest = np.abs(coefficients).max(axis=-1).reshape(-1, len(known)).max(axis=0).tolist()
+    terms = min(2, len(known))
+    while terms < len(known) and largest[terms] < SHRINKING * largest[terms - 1]:
         terms += 1
-    continued = np.vander(times, terms, increasing=True) @ coefficients[..., :terms, :]
-    return continued.reshape(*parts, len(times), cells, points)
+    continued = _powers(tuple(nodes.tolist()), terms) @ coefficients[..., :terms, :]
+    return continued.reshape(*parts, len(nodes), cells, points)
 
 
 @cache
-def _taylor_from_samples(nodes: tuple[float, ...]) -> Array:
-    return np.linalg.inv(np.vander(np.array(nodes) - 1, increasing=True))
+def _taylor_from_samples(known: tuple[float, ...]) -> Array:
+    return np.linalg.inv(np.vander(np.array(known) - 1, increasing=True))
+
+
+@cache
+def _powers(nodes: tuple[float, ...], terms: int) -> Array:
+    return np.vander(np.array(nodes), terms, increasing=True)

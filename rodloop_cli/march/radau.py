@@ -14,9 +14,10 @@ from rodloop_cli.march.predictor import Past, predict
 from rodloop_cli.march.stages import Equations, Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.radau import RadauIIA, radau_iia
 from rodloop_cli.physics.boxes import BoxEquations
-from rodloop_cli.physics.equations import NODAL, Fields, Instant, Motion
+from rodloop_cli.physics.equations import NODAL, Fields, Instant, Iterate, Motion
 from rodloop_cli.physics.whole_loop import LoopEquations
 
 REUSE_BELOW = 0.05
@@ -66,9 +67,9 @@ class RadauStepper:
         motion = _motion(method, state, size)
         guess = predict(state, last, method.nodes, size)
 
-        def renew(fields: Fields, trusted: bool) -> Linearisation:
+        def renew(iterate: Iterate, trusted: bool) -> Linearisation:
             self.work.factorizations += 1
-            instant = Instant.of_stage(fields, method.stages // 2, None if trusted else state.force)
+            instant = iterate.instant(method.stages // 2, None if trusted else state.force)
             return self.linearised(state.equations, size, instant)
 
         try:
@@ -118,16 +119,21 @@ class RadauStepper:
         e z_X/Δt + u0.
         """
         assert self.linearisation is not None
-        weights, rate = self.method.embedded, self.method.eigenvalues[0].real / size
-        moved = fields.position[..., :-1] - state.position[:, None, :, :-1]
-        gained = fields.velocity[..., :-1] - state.velocity[:, None, :, :-1]
-        drift = np.einsum("k,ckni->cni", weights / size, moved) + state.velocity[..., :-1]
-        push = rate * drift + np.einsum("k,ckni->cni", weights / size, gained) + state.acceleration[..., :-1]
-        right_hand_side = equations.load_response(
-            fields.cosine[-1], fields.sine[-1], -state.equations.mesh.density[:, None] * push
-        )
-        correction = self.linearisation.systems.solve_real(right_hand_side)
-        return float(np.abs(equations.displacement(fields.cosine[-1], fields.sine[-1], correction)).max())
+        weights, rate = self.method.embedded / size, self.method.eigenvalues[0].real / size
+        total = float(weights.sum())
+        push = _weighted(rate * weights, fields.position) - (rate * total) * state.position
+        push += _weighted(weights, fields.velocity) + (rate - total) * state.velocity
+        push += state.acceleration
+        push *= -state.equations.mesh.density[:, None]
+        cosine, sine = fields.tangent[:, -1]
+        correction = self.linearisation.systems.solve_real(equations.load_response(cosine, sine, push[..., :-1]))
+        return float(np.abs(equations.displacement(cosine, sine, correction)).max())
+
+
+def _weighted(weights: Array, stages: Array) -> Array:
+    """(2, n, m + 1): the sum of values at the stages (2, s, n, m + 1)."""
+    values: Array = (weights @ stages.reshape(2, len(weights), -1)).reshape(2, *stages.shape[2:])
+    return values
 
 
 @cache

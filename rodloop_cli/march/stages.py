@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rodloop_cli.march.predictor import Guess
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.boxes import BoxEquations
-from rodloop_cli.physics.equations import Fields, Instant, Motion
+from rodloop_cli.physics.equations import Fields, Instant, Iterate, Motion
 from rodloop_cli.physics.whole_loop import LoopEquations
 
 Complex = NDArray[np.complex128]
@@ -86,37 +86,31 @@ def solve_stages(
     motion: Motion,
     guess: Guess,
     linearisation: Linearisation | None,
-    renew: Callable[[Fields, bool], Linearisation],
+    renew: Callable[[Iterate, bool], Linearisation],
     target: float,
 ) -> tuple[Solution | None, Linearisation]:
     """Iterate until the position error is below ``target``, judged by the contraction; None if it does not contract.
 
-    ``renew(fields, trusted)`` makes a linearisation at the current fields, whose forces are trusted only after an
+    ``renew(iterate, trusted)`` makes a linearisation at the present iterate, whose forces are trusted only after an
     iteration: those of a guess contain its accelerations, which amplify its error by Δt⁻².
     """
-    unknowns = equations.compressed(guess.unknowns)
-    fields = equations.guessed(unknowns, guess.force, motion)
-    linearisation = linearisation or renew(fields, False)
+    iterate: Iterate = equations.iterate(guess.unknowns, guess.force, motion)
+    linearisation = linearisation or renew(iterate, False)
     renewals = 0
     last, contraction = np.inf, 0.0
     for iteration in range(1, MAX_ITERATIONS + 1):
         instant = linearisation.instant
-        integrated = equations.integrated(unknowns, fields, motion, instant)
-        correction = linearisation.correction(equations.residual(unknowns, integrated))
-        unknowns = unknowns + correction
-        fields = equations.corrected(integrated, unknowns, correction, motion, instant)
-        size = float(np.abs(fields.position - integrated.position).max())
+        size = iterate.correct(linearisation.correction(iterate.residual(instant)), instant)
         if not np.isfinite(size):
             break
         if iteration > 1:
             contraction = size / last
         if size < CERTAIN * target or (iteration > 1 and _converged(size, contraction, target)):
-            fields = equations.finished(integrated, fields, correction, motion, instant)
-            return Solution(equations.expanded(unknowns, fields), fields, iteration, contraction), linearisation
+            return Solution(*iterate.solution(instant), iteration, contraction), linearisation
         if iteration > 1:
             too_slow = contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration)
             if (too_slow or contraction > SLOW) and contraction < DIVERGING and renewals < MOST_RENEWALS:
-                linearisation, renewals = renew(fields, True), renewals + 1
+                linearisation, renewals = renew(iterate, True), renewals + 1
             elif too_slow:
                 break
         last = size

@@ -5,7 +5,7 @@ One-stage collocation is the midpoint ("Keller") box; with m points the nodal va
 """
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -32,7 +32,7 @@ class GaussRule:
     def m(self) -> int:
         return len(self.points)
 
-    @property
+    @cached_property
     def to_points_and_end(self) -> Array:
         """(m, m + 1): integrals from 0 to each Gauss point and, in the last column, to 1."""
         return np.column_stack([self.to_points, self.weights])

@@ -13,12 +13,16 @@ def bracketed_root(function: Callable[[float], float], low: float, high: float, 
     return root_between(function, (low, function(low)), (high, function(high)), tolerance)
 
 
-def root_between(function: Callable[[float], float], below: Point, above: Point, tolerance: float) -> float:
+def root_between(
+    function: Callable[[float], float], below: Point, above: Point, tolerance: float, smooth: bool = False
+) -> float:
     """The same with the values at the ends, which need not be exact if their signs are what counts.
 
     Chandrupatla's method [Advances in Engineering Software 28 (1997) 145], begun with a secant: inverse quadratic
     interpolation where the function is like a parabola, bisection elsewhere, which also serves one that jumps. No
-    guess comes nearer to an end than half the tolerance, so that the bracket closes once the root is found.
+    guess comes nearer to an end than half the tolerance, so that the bracket closes once the root is found. Where it
+    need not, because the function is ``smooth`` and either side will do, a guess is taken once the next would hardly
+    differ from it.
     """
     positive = above[1] > 0
     guess = _secant(below, above)
@@ -35,6 +39,8 @@ def root_between(function: Callable[[float], float], below: Point, above: Point,
         else:
             left, below = below, new
             guess = _interpolated(new, above, left)
+        if smooth and abs(guess - new[0]) <= tolerance:
+            return new[0]
     return above[0]
 
 

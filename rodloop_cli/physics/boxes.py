@@ -45,36 +45,9 @@ class BoxEquations(Balance):
         self._turn = np.zeros((mesh.cells, NODAL))
         self._turn[-1, THETA] = 2 * pi
 
-    # What `whole_loop.LoopEquations` has to do around Newton's iteration, boxes need not: their nodal values are
-    # unknowns of their own.
-
-    def compressed(self, unknowns: Array) -> Array:
-        """The unknowns as they are."""
-        return unknowns
-
-    def expanded(self, unknowns: Array, fields: Fields) -> Array:
-        """The unknowns as they are."""
-        return unknowns
-
-    def guessed(self, unknowns: Array, force: Array, motion: Motion) -> Fields:
-        """The fields of a first guess."""
-        return self.fields(unknowns, motion)
-
-    def integrated(self, unknowns: Array, fields: Fields, motion: Motion, instant: Instant) -> Fields:
-        """The fields as they are."""
-        return fields
-
-    def corrected(
-        self, integrated: Fields, unknowns: Array, correction: Array, motion: Motion, instant: Instant
-    ) -> Fields:
-        """The fields of the corrected unknowns."""
-        return self.fields(unknowns, motion)
-
-    def finished(
-        self, integrated: Fields, fields: Fields, correction: Array, motion: Motion, instant: Instant
-    ) -> Fields:
-        """The fields as they are."""
-        return fields
+    def iterate(self, unknowns: Array, force: Array, motion: Motion) -> "BoxIterate":
+        """Newton's first iterate of the stages (s, n, 6 + m); forces follow from it."""
+        return BoxIterate(self, unknowns, motion)
 
     def angles(self, unknowns: Array) -> Array:
         """(k, n, m): a view."""
@@ -199,3 +172,30 @@ class BoxEquations(Balance):
         out[:, FX : FY + 1] = force[..., -1].T
         out[:, MOMENT], out[:, THETA], out[:, NODAL:] = moment[:, -1], turning[:, -1], turning[:, :-1]
         return out
+
+
+class BoxIterate:
+    """Stages of the boxes in Newton's iteration: nothing but their unknowns, and the fields that follow."""
+
+    def __init__(self, boxes: BoxEquations, unknowns: Array, motion: Motion) -> None:
+        self._boxes, self._motion = boxes, motion
+        self._unknowns, self._fields = unknowns, boxes.fields(unknowns, motion)
+
+    def instant(self, stage: int, force: Array | None) -> Instant:
+        """One stage, see `Instant.of_stage`."""
+        return Instant.of_stage(self._fields, stage, force)
+
+    def residual(self, instant: Instant) -> Array:
+        """(s, n, 6 + m)."""
+        return self._boxes.residual(self._unknowns, self._fields)
+
+    def correct(self, correction: Array, instant: Instant) -> float:
+        """Add a ``correction`` (s, n, 6 + m); how far it moves the rod."""
+        before = self._fields.position
+        self._unknowns = self._unknowns + correction
+        self._fields = self._boxes.fields(self._unknowns, self._motion)
+        return float(np.abs(self._fields.position - before).max())
+
+    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+        """Unknowns and fields."""
+        return self._unknowns, self._fields

@@ -59,6 +59,19 @@ def _root(start: Floats, end: Floats) -> Floats:
     return np.divide(start, change, out=np.full_like(start, 0.5), where=change != 0.0)
 
 
+def star_shaped(polygons: Floats) -> npt.NDArray[np.bool_]:
+    """[...]: whether closed polylines [2, ..., S] go forward at every edge, as seen from the mean of their vertices.
+
+    Those that turn round once in all, as the loop does, cannot meet themselves then: they go around that place once,
+    for shrinking all distances from it to one another turns them into a circle without a halt.
+    """
+    arms = polygons - polygons.sum(axis=-1, keepdims=True) / polygons.shape[-1]
+    ends = np.concatenate([arms[..., 1:], arms[..., :1]], axis=-1)
+    forward = arms[0] * ends[1]
+    forward -= arms[1] * ends[0]
+    return np.asarray(forward.min(axis=-1) > 0.0)
+
+
 def _is_convex(x: Floats, y: Floats) -> bool:
     """Whether the polyline turns left at every vertex and once around in all: then it cannot meet itself."""
     ex, ey = following(x) - x, following(y) - y

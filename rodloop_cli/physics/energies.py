@@ -38,7 +38,7 @@ class Quadrature:
 
     def kinetic(self, velocity: Array) -> Array:
         """∮ ρ v²/2 ds for velocity (2, …, n, m)."""
-        return _summed(velocity[0] ** 2 + velocity[1] ** 2, self._mass) / 2
+        return _summed(_square(velocity), self._mass) / 2
 
     def rotary(self, spin: Array, rotary_inertia: float) -> Array:
         """∮ ρ ι θ_t²/2 ds for spin θ_t (…, n, m): the kinetic energy of the turning cross-sections."""
@@ -48,9 +48,20 @@ class Quadrature:
         """ζ⊥ ∮ (v_n² + γ v_t²) ds, Eq. (16)."""
         if load.zeta_perp == 0:
             return np.zeros(velocity.shape[1:-2])
-        along = velocity[0] * tangent[0] + velocity[1] * tangent[1]
-        density = velocity[0] ** 2 + velocity[1] ** 2 + (load.gamma - 1) * along**2
-        return load.zeta_perp * self.integral(density)
+        along = velocity[0] * tangent[0]
+        along += velocity[1] * tangent[1]
+        along *= along
+        along *= load.gamma - 1
+        along += _square(velocity)
+        return load.zeta_perp * self.integral(along)
+
+
+def _square(vectors: Array) -> Array:
+    """(…) from vectors (2, …)."""
+    squares = vectors * vectors
+    squares[0] += squares[1]
+    square: Array = squares[0]
+    return square
 
 
 def _summed(values: Array, weights: Array) -> Array:

@@ -12,7 +12,7 @@ does it cell by cell, `whole_loop` round the loop.
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,6 +95,22 @@ class Instant(NamedTuple):
         return cls(cosine, sine, chosen[..., :-1], fields.velocity[:, stage, :, :-1])
 
 
+class Iterate(Protocol):
+    """All stages of a step, while Newton's iteration works on them."""
+
+    def instant(self, stage: int, force: Array | None) -> Instant:
+        """One of them, see `Instant.of_stage`."""
+
+    def residual(self, instant: Instant) -> Array:
+        """(s, …): by how much they miss the equations, with ``instant`` where these are linearised."""
+
+    def correct(self, correction: Array, instant: Instant) -> float:
+        """Add a ``correction`` (s, …); how far it moves the rod."""
+
+    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+        """The unknowns of the boxes (s, n, 6 + m) and the fields, after a last correction."""
+
+
 NOTHING = np.zeros(0)
 
 
@@ -129,13 +145,18 @@ class Balance(ABC):
         force += self._start(unknowns, FORCE)
         shear = force[0, ..., :-1] * tangent[1]
         shear -= force[1, ..., :-1] * tangent[0]
-        moment, theta = self._turning(unknowns, shear, motion)
+        if self.load.rotary_inertia and motion is not None:
+            shear += self.couple(self.angles(unknowns), motion)
+        moment, theta = self.turning(unknowns, shear)
         return Fields(tangent, position, velocity, acceleration, force, moment, theta)
 
-    def _turning(self, unknowns: Array, shear: Array, motion: Motion | None) -> tuple[Array, Array]:
-        """Moment and angle (k, n, m + 1) by (13), from the shear Fx sin θ - Fy cos θ (k, n, m)."""
-        if self.load.rotary_inertia and motion is not None:
-            shear = shear + self._density * self.load.rotary_inertia * _spin_rate(self.angles(unknowns), motion)
+    def couple(self, angles: Array, motion: Motion) -> Array:
+        """ρ ι θ_tt (k, n, m), which (13) adds to the shear."""
+        couple: Array = self._density * self.load.rotary_inertia * _spin_rate(angles, motion)
+        return couple
+
+    def turning(self, unknowns: Array, shear: Array) -> tuple[Array, Array]:
+        """Moment and angle (k, n, m + 1) by (13), from the shear Fx sin θ - Fy cos θ (k, n, m) and the couple."""
         moment = self._integral(shear)
         moment += self._start(unknowns, MOMENT)
         theta = self._integral(moment[..., :-1] * self._compliance)
@@ -154,22 +175,25 @@ class Balance(ABC):
 
     def _force_density(self, tangent: Array, velocity: Array, acceleration: Array) -> Array:
         """(2, k, n, m): F' by (11) and (12)."""
-        density = self._pressure(tangent)
+        density = self.film(tangent, velocity[..., :-1])
         if acceleration.size:
             density += self._density * acceleration[..., :-1]
-        if velocity.size and self.load.zeta_perp:
-            density += self._drag(tangent, velocity[..., :-1])
         return density
 
-    def _pressure(self, tangent: Array) -> Array:
-        """p times minus the normal."""
-        pressure = np.empty_like(tangent)
-        np.multiply(tangent[1], self.load.p, out=pressure[0])
-        np.multiply(tangent[0], -self.load.p, out=pressure[1])
-        return pressure
+    def film(self, tangent: Array, velocity: Array) -> Array:
+        """Pressure and drag per length, of the shape of ``tangent`` (2, …); no drag where ``velocity`` is empty.
 
-    def _drag(self, tangent: Array, velocity: Array) -> Array:
-        """ζ⊥ (u + (γ - 1)(u·t) t), which is (11) and (12) in vector form."""
+        The drag is ζ⊥ (u + (γ - 1)(u·t) t): (11) and (12) in vector form.
+        """
+        film = np.empty_like(tangent)
+        np.multiply(tangent[1], self.load.p, out=film[0])
+        np.multiply(tangent[0], -self.load.p, out=film[1])
+        if velocity.size and self.load.zeta_perp:
+            film += self.drag(tangent, velocity)
+        return film
+
+    def drag(self, tangent: Array, velocity: Array) -> Array:
+        """The drag alone, see `film`."""
         along = (tangent * velocity).sum(axis=0)
         along *= self.load.gamma - 1
         drag: Array = (velocity + along * tangent) * self.load.zeta_perp

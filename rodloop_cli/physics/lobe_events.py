@@ -24,12 +24,16 @@ import numpy.typing as npt
 from rodloop_cli.physics.lobes import find_lobes
 
 Array = npt.NDArray[np.float64]
+Places = npt.NDArray[np.intp]
 
 DEVELOPED = 0.2
 """Range of the radial displacement, over R, from which on the lobes of a shape can be seen."""
 
 VANISHED = 0.01
 """Depth of a valley, as a share of the range of curvature, below which two lobes are one."""
+
+TOGETHER = 2**14
+"""Samples of shapes that are looked at at once."""
 
 SHOULDER = 0.25
 """Curvature over that of the neighbour's top. Once the valley between them had vanished, this was 0.4 to 1 for
@@ -70,18 +74,33 @@ class _Lost:
 
 @dataclass
 class LobeWatch:
-    """Follows the lobes through shapes in order of time; ``seen``: samples at their tops in the latest one."""
+    """Follows the lobes through shapes in order of time; ``seen``: samples at their tops in the latest one.
+
+    Shapes wait until there are enough TOGETHER, or somebody asks: one Fourier transform of all is quicker.
+    """
 
     _time: float = 0.0
     _points: int = 1
     _seen: list[int] = field(default_factory=list)
     _lost: list[_Lost] = field(default_factory=list)
+    _waiting: list[tuple[float, Array, Places | None]] = field(default_factory=list)
 
-    def watch(self, time: float, curvature: Array) -> None:
-        """Take the next shape; ``curvature`` [S] as for `find_lobes`."""
-        if radial_range(curvature) < DEVELOPED:
+    def watch(self, time: float, curvature: Array, tops: Places | None = None) -> None:
+        """Take the next shape; ``curvature`` [S] as for `find_lobes`, and what that found if it is at hand."""
+        self._waiting.append((time, curvature, tops))
+        if len(self._waiting) * len(curvature) >= TOGETHER:
+            self._follow_waiting()
+
+    def _follow_waiting(self) -> None:
+        if not self._waiting:
             return
-        tops = [int(top) for top in find_lobes(curvature)]
+        waiting, self._waiting = self._waiting, []
+        ranges = radial_range(np.array([curvature for _, curvature, _ in waiting]))
+        for (time, curvature, tops), seen in zip(waiting, (ranges >= DEVELOPED).tolist(), strict=True):
+            if seen:
+                self._follow(time, curvature, (find_lobes(curvature) if tops is None else tops).tolist())
+
+    def _follow(self, time: float, curvature: Array, tops: list[int]) -> None:
         self._points = len(curvature)
         reach = self._points / (2 * max(len(tops), len(self._seen), 1))
         missing, new = _unmatched(self._seen, tops, reach, self._points)
@@ -92,6 +111,7 @@ class LobeWatch:
 
     def events(self) -> Iterator[LobeEvent]:
         """The losses so far, in order; one whose fate does not show yet stands in a valley, on its way to collapse."""
+        self._follow_waiting()
         for lost in self._lost:
             yield LobeEvent(lost.time, 2 * np.pi * lost.place / self._points, lost.fate or Fate.COLLAPSE)
 
@@ -103,16 +123,18 @@ class LobeWatch:
                 self._lost.remove(min(near, key=lambda lost: _distance(top, lost.place, self._points)))
 
 
-def radial_range(curvature: Array) -> float:
-    """Range of the radial displacement w of the circle that has this curvature [S]: to first order κ - 1 = -w'' - w.
+def radial_range(curvature: Array) -> Array:
+    """[…]: range of the radial displacement w of the circle that has this curvature […, S]: to first order κ - 1 =
+    -w'' - w.
 
     Waves of short length, large in the curvature and invisible in the shape, count little.
     """
     waves = np.fft.rfft(curvature)
-    n = np.arange(len(waves))
-    waves[:2], waves[2:] = 0, waves[2:] / (n[2:] ** 2 - 1)
-    displacement = np.fft.irfft(waves, len(curvature))
-    return float(displacement.max() - displacement.min())
+    n = np.arange(2, waves.shape[-1])
+    waves[..., :2] = 0
+    waves[..., 2:] /= n * n - 1
+    displacement = np.fft.irfft(waves, curvature.shape[-1])
+    return np.asarray(displacement.max(axis=-1) - displacement.min(axis=-1))
 
 
 def _unmatched(before: list[int], after: list[int], reach: float, points: int) -> tuple[list[int], list[int]]:

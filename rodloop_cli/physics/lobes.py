@@ -36,7 +36,7 @@ LEAST_RANGE = 1e-6
 
 def count_lobes(curvature: npt.NDArray[np.float64]) -> int:
     """Number of lobes; `curvature` [S] as for `find_lobes`."""
-    return len(find_lobes(curvature))
+    return len(_tops(curvature))
 
 
 def find_lobes(curvature: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
@@ -45,29 +45,33 @@ def find_lobes(curvature: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     `curvature` [S]: kappa R at points in order around the loop, counter-clockwise, the first not repeated; evenly
     spaced or nearly so, and at least some 8 to a lobe.
     """
+    return np.array(_tops(curvature), dtype=np.intp)
+
+
+def _tops(curvature: npt.NDArray[np.float64]) -> list[int]:
     smooth = _without_grid_ripple(np.asarray(curvature, dtype=np.float64))
-    span = float(smooth.max() - smooth.min())
+    span = float(smooth[smooth.argmax()] - smooth[smooth.argmin()])
     if span < LEAST_RANGE:
-        return np.empty(0, dtype=np.intp)
-    turns = _extremes_from_lowest(smooth)
-    heights = smooth[turns].tolist()
-    tops = [i for i in _standing_out(heights, PROMINENCE * span) if heights[i] > 0.0]
-    return np.sort(turns[tops])
+        return []
+    extremes = _extremes(smooth)
+    places, heights = extremes.tolist(), smooth[extremes].tolist()
+    lowest = heights.index(min(heights))
+    places, heights = places[lowest:] + places[:lowest], heights[lowest:] + heights[:lowest]
+    return sorted(places[i] for i in _standing_out(heights, PROMINENCE * span) if heights[i] > 0.0)
 
 
 def _without_grid_ripple(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Two passes of the periodic (1, 2, 1)/4 filter: removes waves of 2 or 3 samples, overshoots nowhere."""
-    return np.convolve(np.concatenate([values[-2:], values, values[:2]]), TWO_PASSES, mode="valid")
+    return np.correlate(np.concatenate([values[-2:], values, values[:2]]), TWO_PASSES, mode="valid")
 
 
-def _extremes_from_lowest(values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
-    """Indices of the alternating minima and maxima around the loop, from the lowest one on."""
+def _extremes(values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
+    """Indices of the alternating minima and maxima around the loop."""
     steps = following(values) - values
-    moving = np.flatnonzero(steps)  # plateaus count as their first point
-    rising = steps[moving] > 0.0
-    extremes = following(moving)[following(rising) != rising]
-    lowest = int(np.argmin(values[extremes]))
-    return np.concatenate([extremes[lowest:], extremes[:lowest]])
+    moving = steps.nonzero()[0]  # plateaus count as one point
+    rising = (steps > 0.0)[moving]
+    extremes: npt.NDArray[np.intp] = following(moving)[following(rising) != rising]
+    return extremes
 
 
 def _standing_out(heights: Sequence[float], least: float) -> Iterator[int]:

@@ -6,6 +6,9 @@ from numpy.typing import NDArray
 from rodloop_cli.numerics.gauss import GaussRule, lagrange_matrix
 from rodloop_cli.physics.rod import Array, Mesh
 
+MOST_FULL = 128
+"""Values on the cells up to which one full matrix is faster than picking the cell of every point."""
+
 
 class Sampler:
     """Interpolates inside each cell through its left end, its Gauss points and its right end (order m + 2).
@@ -15,10 +18,11 @@ class Sampler:
 
     def __init__(self, mesh: Mesh, rule: GaussRule, s: Array) -> None:
         """``s`` (S,) in [0, 2π)."""
-        self.cell: NDArray[np.int_] = np.clip(np.searchsorted(mesh.edges, s, side="right") - 1, 0, mesh.cells - 1)
+        self.cell: NDArray[np.int_] = mesh.edges[1:-1].searchsorted(s, side="right")
         local = (s - mesh.edges[self.cell]) / mesh.lengths[self.cell]
         self._weights = lagrange_matrix(np.concatenate([[0.0], rule.points, [1.0]]), local)
-        self._start = self.cell == 0
+        self._gain = self._weights[:, 0] * (self.cell == 0)
+        self._matrix = self._full(mesh.cells) if mesh.cells * (rule.m + 1) <= MOST_FULL else None
         self.stiffness = mesh.stiffness[self.cell]
         self.segment = mesh.segment[self.cell]
 
@@ -26,8 +30,19 @@ class Sampler:
         """(…, S) from values (…, n, m + 1) at the Gauss points and right ends; ``turn`` (…, 1) is what they gain round
         the loop.
         """
-        sampled: Array = values[..., self.cell - 1, -1]
-        sampled -= turn * self._start
-        sampled *= self._weights[:, 0]
-        sampled += np.einsum("...sj,sj->...s", values[..., self.cell, :], self._weights[:, 1:])
+        if self._matrix is not None:
+            sampled: Array = values.reshape(*values.shape[:-2], -1) @ self._matrix
+        else:
+            sampled = values[..., self.cell - 1, -1]
+            sampled *= self._weights[:, 0]
+            sampled += np.einsum("...sj,sj->...s", values[..., self.cell, :], self._weights[:, 1:])
+        sampled -= turn * self._gain
         return sampled
+
+    def _full(self, cells: int) -> Array:
+        """(n (m + 1), S): what every value weighs at every point."""
+        points, inside = np.arange(len(self.cell)), self._weights[:, 1:]
+        matrix = np.zeros((cells, inside.shape[1], len(self.cell)))
+        matrix[self.cell, :, points] = inside
+        matrix[self.cell - 1, -1, points] += self._weights[:, 0]
+        return matrix.reshape(-1, len(self.cell))

@@ -52,9 +52,15 @@ def displacement(waves: tuple[Wave, ...], s: Array) -> Array:
     return sum((w.amplitude * np.cos(w.mode * s - w.phase) for w in waves), np.zeros_like(s))
 
 
-def slope(waves: tuple[Wave, ...], s: Array) -> Array:
-    """δ'(s)."""
-    return sum((-w.mode * w.amplitude * np.sin(w.mode * s - w.phase) for w in waves), np.zeros_like(s))
+def displacement_and_slope(waves: tuple[Wave, ...], s: Array) -> tuple[Array, Array]:
+    """δ(s) and δ'(s)."""
+    delta, slope = np.zeros_like(s), np.zeros_like(s)
+    for wave in waves:
+        phase = wave.mode * s
+        phase -= wave.phase
+        delta += wave.amplitude * np.cos(phase)
+        slope -= wave.mode * wave.amplitude * np.sin(phase)
+    return delta, slope
 
 
 def slope_change(waves: tuple[Wave, ...], s: Array) -> Array:
@@ -95,7 +101,8 @@ def perturbed(base: Shape, waves: tuple[Wave, ...], rod: Rod) -> Shape:
     def along(s: Array) -> tuple[Array, Array]:
         old, rate = arclength.old(s)
         theta, curvature = base.along(old)
-        outward, forward = slope(waves, old), 1 + displacement(waves, old)
+        delta, outward = displacement_and_slope(waves, old)
+        forward = 1 + delta
         turning = (forward * slope_change(waves, old) - outward**2) / (forward**2 + outward**2)
         return theta - np.arctan2(outward, forward), (curvature - turning) * rate
 
@@ -111,6 +118,7 @@ class _NewArclength:
         uniform = np.linspace(0, LENGTH, cells + 1)
         self._edges = np.unique(np.concatenate([uniform, base.breaks, [0.0], ends]))
         self._rule = gauss_rule(QUADRATURE_POINTS)
+        self._places = np.append(self._rule.points, 1.0)
         lengths = self._integral(self._edges[:-1], self._edges[1:])
         self._stretched = np.concatenate([[0.0], np.cumsum(lengths)])
         starts = np.concatenate([[0.0], ends[:-1]])
@@ -120,13 +128,20 @@ class _NewArclength:
         self._new_edges = np.concatenate([[0.0], np.cumsum(lengths * self._scale)])
 
     def stretch(self, s: Array) -> Array:
-        delta, delta_slope = displacement(self._waves, s), slope(self._waves, s)
-        return np.hypot(1 + self._base.along(s)[1] * delta, delta_slope)
+        delta, slope = displacement_and_slope(self._waves, s)
+        delta *= self._base.along(s)[1]
+        delta += 1
+        return np.hypot(delta, slope)
 
     def _integral(self, start: Array, end: Array) -> Array:
-        points = start[..., None] + (end - start)[..., None] * self._rule.points
-        integral: Array = (end - start) * (self.stretch(points) @ self._rule.weights)
-        return integral
+        return self._integral_and_end(start, end)[0]
+
+    def _integral_and_end(self, start: Array, end: Array) -> tuple[Array, Array]:
+        """Of the stretch, and its value at the end."""
+        length = end - start
+        stretch = self.stretch(start[..., None] + length[..., None] * self._places)
+        integral: Array = length * (stretch[..., :-1] @ self._rule.weights)
+        return integral, stretch[..., -1]
 
     def new(self, old: Array) -> Array:
         """New arclength of points of the base."""
@@ -143,8 +158,9 @@ class _NewArclength:
         start, new_start, scale = self._edges[cell], self._new_edges[cell], self._scale[cell]
         old: Array = np.interp(new, self._new_edges, self._edges)
         for _ in range(MOST_STEPS):
-            rate = 1 / (scale * self.stretch(old))
-            step = (new - new_start - scale * self._integral(start, old)) * rate
+            passed, stretch = self._integral_and_end(start, old)
+            rate = 1 / (scale * stretch)
+            step = (new - new_start - scale * passed) * rate
             old = old + step
             if np.abs(step).max() < CONVERGED:
                 break

@@ -1,5 +1,7 @@
 """The energy account of a run: every energy at the stored times, and the residual that should be zero."""
 
+from functools import cache
+
 import numpy as np
 
 from rodloop_cli.march.dense import Shapes, fractions
@@ -24,23 +26,32 @@ class EnergyAccount:
         self.largest_residual = 0.0
         self.largest_change = 0.0
 
-    def at(self, step: Step, shapes: Shapes, quadrature: Quadrature) -> dict[str, Array]:
-        """(k,) of every energy at instants of a step."""
-        area = quadrature.area(shapes.position[INSIDE], shapes.tangent)
-        bending = quadrature.bending(shapes.moment[INSIDE])
-        kinetic = quadrature.kinetic(shapes.velocity[INSIDE])
+    def at(self, step: Step, shapes: Shapes, quadrature: Quadrature) -> list[dict[str, float]]:
+        """Every energy at the instants of a step."""
+        tangent, velocity = shapes.tangent, shapes.velocity[INSIDE]
+        kinetic = quadrature.kinetic(velocity)
         if self._load.rotary_inertia:
             kinetic = kinetic + quadrature.rotary(shapes.spin, self._load.rotary_inertia)
-        surface = self._load.p * area
-        dissipated = self._dissipated + self._taken(step, shapes.times, quadrature)
-        rate = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
+        instants = zip(
+            quadrature.area(shapes.position[INSIDE], tangent).tolist(),
+            quadrature.bending(shapes.moment[INSIDE]).tolist(),
+            kinetic.tolist(),
+            self._taken(step, shapes.times, quadrature),
+            quadrature.dissipation_rate(velocity, tangent, self._load).tolist(),
+            strict=True,
+        )
+        return [self._balance(*instant) for instant in instants]
+
+    def _balance(self, area: float, bending: float, kinetic: float, taken: float, rate: float) -> dict[str, float]:
+        """The energies of an instant, the residual among them; ``taken`` by the film since the start of the step."""
+        surface, dissipated = self._load.p * area, self._dissipated + taken
         return {
             "bending_energy": bending,
             "surface_energy": surface,
             "kinetic_energy": kinetic,
             "dissipated_energy": dissipated,
             "energy_residual": self._residual(
-                bending + surface + kinetic + dissipated, surface, np.maximum(kinetic, dissipated)
+                bending + surface + kinetic + dissipated, surface, max(kinetic, dissipated)
             ),
             "dissipation_rate": rate,
             "area": area,
@@ -48,7 +59,9 @@ class EnergyAccount:
 
     def close(self, step: Step, quadrature: Quadrature) -> None:
         """Add what the film took in the whole step."""
-        self._dissipated += float(self._taken(step, np.array([step.start.time + step.size]), quadrature)[0])
+        if self._load.zeta_perp:
+            power = self._power_in(step, quadrature)
+            self._dissipated += step.size * float(power @ gauss_rule(len(power)).weights)
 
     def memory(self) -> tuple[float, ...]:
         """What a continued run needs to know."""
@@ -60,28 +73,32 @@ class EnergyAccount:
         self._dissipated, total, surface, self.largest_residual, self.largest_change = map(float, memory)
         self._first = total, surface
 
-    def _residual(self, total: Array, surface: Array, gained: Array) -> Array:
-        if self._first is None:
-            self._first = float(total[0]), float(surface[0])
-        residual = total - self._first[0]
-        self.largest_residual = max(self.largest_residual, float(np.abs(residual).max()))
-        change = np.maximum(np.abs(surface - self._first[1]), gained)
-        self.largest_change = max(self.largest_change, float(change.max()))
+    def _residual(self, total: float, surface: float, gained: float) -> float:
+        first_total, first_surface = self._first = self._first or (total, surface)
+        residual = total - first_total
+        self.largest_residual = max(self.largest_residual, abs(residual))
+        self.largest_change = max(self.largest_change, abs(surface - first_surface), gained)
         return residual
 
-    def _taken(self, step: Step, times: Array, quadrature: Quadrature) -> Array:
+    def _taken(self, step: Step, times: Array, quadrature: Quadrature) -> list[float]:
         """(k,): energy taken by the film from the start of the step."""
-        if self._load.zeta_perp == 0:
-            return np.zeros(len(times))
-        if self._film is None or self._film[0] is not step:
-            self._film = step, self._integrated_power(step, quadrature)
-        coefficients = self._film[1]
-        taken: Array = series(fractions(step, times), len(coefficients)) @ coefficients
+        if not self._load.zeta_perp:
+            return [0.0] * len(times)
+        power = self._power_in(step, quadrature)
+        coefficients = interpolation(_places(len(power))).integrals @ (step.size * power)
+        taken: list[float] = (series(fractions(step, times), len(coefficients)) @ coefficients).tolist()
         return taken
 
-    def _integrated_power(self, step: Step, quadrature: Quadrature) -> Array:
-        """The energy taken since the start of the step as a `series`, from the power at Gauss points in time."""
-        nodes = gauss_rule(len(step.nodes) + 1).points
-        shapes = Shapes(step, step.start.time + step.size * nodes)
-        power = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
-        return interpolation(tuple(nodes.tolist())).integrals @ (step.size * power)
+    def _power_in(self, step: Step, quadrature: Quadrature) -> Array:
+        """(s + 1,): what the film takes, at Gauss points in time."""
+        if self._film is None or self._film[0] is not step:
+            shapes = Shapes.inside(step, _places(len(step.nodes) + 1))
+            power = quadrature.dissipation_rate(shapes.velocity[INSIDE], shapes.tangent, self._load)
+            self._film = step, power
+        return self._film[1]
+
+
+@cache
+def _places(points: int) -> tuple[float, ...]:
+    """The Gauss points in a step."""
+    return tuple(gauss_rule(points).points.tolist())

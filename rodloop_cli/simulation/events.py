@@ -16,7 +16,7 @@ from rodloop_cli.numerics.roots import Point, bracketed_root, root_between
 from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.clearance import crossing_indicator, least_clearance
 from rodloop_cli.physics.closure import Closure
-from rodloop_cli.physics.crossing import crosses_itself
+from rodloop_cli.physics.crossing import crosses_itself, star_shaped
 from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.rod import LENGTH
 from rodloop_cli.physics.sampling import Sampler
@@ -33,9 +33,10 @@ WATCHED_POINTS, LOCATED_POINTS = 128, 400
 class CrossingWatch:
     """Finds the first time at which the centreline crosses itself.
 
-    A shape without concave parts cannot cross, and one that is a distance d from crossing cannot cross before some
-    point has moved by d/2. Otherwise the shapes at the stages of a step are tested, so that a crossing that comes and
-    goes within a step is seen if it lasts as long as the gap between two stages.
+    A shape without concave parts cannot cross, nor can one that is seen whole from its centre; one that is a distance
+    d from crossing cannot cross before some point has moved by d/2. Otherwise the shapes at the stages of a step are
+    tested, so that a crossing that comes and goes within a step is seen if it lasts as long as the gap between two
+    stages.
     """
 
     def __init__(self) -> None:
@@ -50,24 +51,30 @@ class CrossingWatch:
             self._safe = 0.0
             return None
         self._use(step.start.equations)
-        stage = self._next_suspect(step, 0)
-        while stage is not None:
-            polygon = self._watched(step.fields.position[:, stage])
-            if crosses_itself(*polygon):
+        suspects = self._suspects(step, 0)
+        if not suspects:
+            return None
+        polygons = self._watched(step.fields.position)
+        star = star_shaped(polygons).tolist()
+        while suspects:
+            stage = suspects.pop(0)
+            if star[stage]:
+                continue
+            if crosses_itself(*polygons[:, stage]):
                 before = float(step.nodes[stage - 1]) if stage else 0.0
                 return self._locate(step, before, float(step.nodes[stage]))
-            self._keep(step, stage, polygon)
-            stage = self._next_suspect(step, stage + 1)
+            self._keep(step, stage, polygons[:, stage])
+            suspects = self._suspects(step, stage + 1)
         return None
 
-    def _next_suspect(self, step: Step, first: int) -> int | None:
-        """The first stage from this one on at which some point has moved too far since the shape was found simple."""
+    def _suspects(self, step: Step, first: int) -> list[int]:
+        """The stages from this one on at which some point has moved too far since the shape was found simple."""
         if self._safe <= 0:
-            return first if first < len(step.nodes) else None
+            return list(range(first, len(step.nodes)))
         moved = step.fields.position[:, first:] - self._reference[:, None]
         moved *= moved
-        too_far = np.flatnonzero((moved[0] + moved[1]).max(axis=(1, 2), initial=0.0) >= self._safe**2)
-        return first + int(too_far[0]) if too_far.size else None
+        too_far = (moved[0] + moved[1]).max(axis=(1, 2), initial=0.0) >= self._safe**2
+        return [stage for stage, far in enumerate(too_far.tolist(), first) if far]
 
     def _keep(self, step: Step, stage: int, polygon: Array) -> None:
         """Remember a simple shape and how far its points can move before it may cross.
@@ -145,16 +152,20 @@ class AreaExtrema:
         quadrature = self._quadrature_on(step.start.equations)
 
         @cache
-        def at(fraction: float) -> tuple[float, float]:
-            shapes = Shapes(step, np.array([step.start.time + fraction * step.size]))
-            rate = quadrature.area_rate(shapes.velocity[..., :-1], shapes.tangent)
-            return rate.item(), quadrature.area(shapes.position[..., :-1], shapes.tangent).item()
+        def shape(fraction: float) -> Shapes:
+            return Shapes(step, np.array([step.start.time + fraction * step.size]))
 
-        before = before or (0.0, at(0.0)[0])
-        fraction = root_between(lambda f: at(f)[0], before, after, TIME_PRECISION)
+        def rate(fraction: float) -> float:
+            at = shape(fraction)
+            return quadrature.area_rate(at.velocity[..., :-1], at.tangent).item()
+
+        before = before or (0.0, rate(0.0))
+        fraction = root_between(rate, before, after, TIME_PRECISION, smooth=True)
         time = step.start.time + fraction * step.size
         if time <= until:
-            (self.minima if self.sign < 0 else self.maxima).append((time, at(fraction)[1]))
+            at = shape(fraction)
+            area = quadrature.area(at.position[..., :-1], at.tangent).item()
+            (self.minima if self.sign < 0 else self.maxima).append((time, area))
 
     @property
     def period(self) -> float | None:

@@ -1,5 +1,6 @@
 """From steps to rows of the result file."""
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,7 +13,6 @@ from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.crossing import crosses_itself
 from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.equations import Load
-from rodloop_cli.physics.lobes import count_lobes
 from rodloop_cli.physics.rod import LENGTH, Rod
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.simulation.account import EnergyAccount
@@ -32,13 +32,13 @@ def output_points(count: int) -> Array:
 
 
 class Recorder:
-    """Rows at the stored times."""
+    """Rows at the stored times; the lobes are for whoever follows them to add."""
 
     def __init__(self, rod: Rod, load: Load, points: int, times: tuple[float, ...]) -> None:
         self.s = output_points(points)
         self.segment: NDArray[np.int_] = rod.segment_at(self.s) + 1
         self.account = EnergyAccount(load)
-        self._times = np.array(times)
+        self._times = times
         self._next = 0
         self.begun = False
         self._equations: BoxEquations | None = None
@@ -62,15 +62,16 @@ class Recorder:
         self._use(step.start.equations)
         end = step.start.time + step.size
         if stopped is None:
-            due = int(np.searchsorted(self._times, end * (1 + ROUND_OFF), side="right"))
+            due = bisect_right(self._times, end * (1 + ROUND_OFF), self._next)
             times = self._times[self._next : due]
         else:
-            due = int(np.searchsorted(self._times, stopped * (1 - ROUND_OFF), side="left"))
-            times = np.append(self._times[self._next : due], stopped)
+            due = bisect_left(self._times, stopped * (1 - ROUND_OFF), self._next)
+            times = (*self._times[self._next : due], stopped)
         self._next = due
-        if len(times):
-            for row in self._rows(step, Shapes(step, times), step.size, step.newton_iterations):
-                yield row | {"crossing": self._crossing(row, crossed)}
+        if times:
+            for row in self._rows(step, Shapes(step, np.array(times)), step.size, step.newton_iterations):
+                row["crossing"] = self._crossing(row, crossed)
+                yield row
         self.account.close(step, self._quadrature)
 
     def memory(self) -> Array:
@@ -97,12 +98,11 @@ class Recorder:
             self._quadrature = Quadrature(equations.mesh, equations.rule)
 
     def _rows(self, step: Step, shapes: Shapes, size: float, iterations: int) -> Iterator[Row]:
-        columns = self._profiles(shapes) | self.account.at(step, shapes, self._quadrature)
-        for i, time in enumerate(shapes.times):
-            row: Row = {name: values[i] for name, values in columns.items()}
-            row["lobes"] = count_lobes(columns["curvature"][i])
-            row |= {"t": float(time), "step_size": size, "newton_iterations": iterations, "crossing": 0}
-            yield row
+        profiles = self._profiles(shapes)
+        energies = self.account.at(step, shapes, self._quadrature)
+        for i, (time, row) in enumerate(zip(shapes.times.tolist(), energies, strict=True)):
+            curves = {name: values[i] for name, values in profiles.items()}
+            yield curves | row | {"t": time, "step_size": size, "newton_iterations": iterations, "crossing": 0}
 
     def _profiles(self, shapes: Shapes) -> dict[str, Array]:
         """(k, S) of every profile."""

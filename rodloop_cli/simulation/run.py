@@ -18,6 +18,7 @@ from rodloop_cli.march.refine import Refiner
 from rodloop_cli.march.state import Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.physics.lobes import find_lobes
 from rodloop_cli.simulation.amplification import Amplification
 from rodloop_cli.simulation.events import CrossingWatch, RestWatch
 from rodloop_cli.simulation.record import Recorder, Row
@@ -27,8 +28,9 @@ from rodloop_cli.simulation.summary import Summary
 Progress = Callable[[float], None]
 """Told the time reached, after every step."""
 
-FIRST_STEP = 100.0
-"""First step proposed, in units of the starting step: the impulsive start is met with short steps."""
+FIRST_STEP, FIRST_STEP_WITHOUT_JUNCTIONS = 100.0, 3000.0
+"""First step proposed, in units of the starting step. Junctions of stiffness meet the load with waves of every length,
+and need short ones."""
 
 REST = 1e-6
 """Distance from an equilibrium at which a run of fixed steps has settled."""
@@ -139,9 +141,12 @@ class Run:
             self.summary.lobes.watch(time, curvature)
 
     def _store(self, row: Row, sink: RowSink) -> None:
+        curvature = np.asarray(row["curvature"])
+        tops = find_lobes(curvature)
+        row["lobes"] = len(tops)
         sink.append(row)
         if not row["crossing"]:
-            self.summary.lobes.watch(float(row["t"]), np.asarray(row["curvature"]))
+            self.summary.lobes.watch(float(row["t"]), curvature, tops)
 
     def _finish(self, sink: RowSink) -> None:
         account, summary = self.recorder.account, self.summary
@@ -157,7 +162,8 @@ def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:
         assert case.dt is not None
         return FixedMarcher(begun.state, case.t_end, case.dt, work)
     assert case.tol is not None
-    first = FIRST_STEP * STARTING_TIME * fastest_time(begun.load, begun.rod)
+    first = FIRST_STEP if begun.rod.has_stiffness_contrast else FIRST_STEP_WITHOUT_JUNCTIONS
+    first *= STARTING_TIME * fastest_time(begun.load, begun.rod)
     longest = case.dt or case.t_end
     plan = Plan(case.t_end, case.tol, stages_for(case.tol), longest, min(first, longest))
     return Marcher(begun.state, plan, Refiner(fixed=case.N is not None), begun.departure, work)

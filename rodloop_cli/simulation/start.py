@@ -29,8 +29,9 @@ LEAST_POINTS, POINTS_PER_WAVE = 24, 6
 MOST_LARGE = 4
 """Segments up to which cells are large: a cell never spans two, and small ones need few points."""
 
-FEW_POINTS, MANY_POINTS = 16, 20
-"""In a large cell: for loose and for tight tolerances. A mesh that is graded towards junctions of stiffness gets few.
+FEWEST_POINTS, FEW_POINTS, MANY_POINTS = 12, 16, 20
+"""In a large cell: the more the tighter the tolerance. A mesh that is graded towards junctions of stiffness never gets
+many.
 
 A cell's own equations, with the values at its left end given, have a condition that depends on h (ρ/b)^¼ / √Δt alone.
 Its largest value grows almost fourfold from point to point, to 1e12 with 16 and 5e14 with 20, where Newton's correction
@@ -100,7 +101,10 @@ def points_per_cell(case: Case) -> int:
     assert case.tol is not None
     if case.N is not None or len(case.segments) > MOST_LARGE:
         return 6 if case.tol > 3e-5 else 8 if case.tol > 3e-7 else 10
-    if case.tol > 1e-5 or _grades_cells(rod_of(case), load_of(case), waves_of(case)):
+    rod = rod_of(case)
+    if case.tol > (1e-3 if rod.has_stiffness_contrast else 3e-4):
+        return FEWEST_POINTS
+    if case.tol > 1e-5 or _grades_cells(rod, load_of(case), waves_of(case)):
         return FEW_POINTS
     return MANY_POINTS
 

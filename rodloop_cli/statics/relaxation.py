@@ -42,9 +42,9 @@ def relax(equations: BoxEquations, unknowns: Array) -> Array:
         correction = _held_correction(equations, unknowns, position, hold)
         size = float(np.abs(correction[:, NODAL:]).max())
         unknowns = unknowns + min(1.0, LARGEST_TURN / max(size, 1e-300)) * correction
-        position = equations.shape(unknowns[None])[1]
         if _at_rest(size, before):
             return unknowns
+        position = equations.shape(unknowns[None])[1]
         hold, before = max(WEAKEST_HOLD, hold * min(1.0, size)), size
     raise ConvergenceError(f"no equilibrium found in {MOST_STEPS} steps at p = {equations.load.p:g}")
 

@@ -55,7 +55,7 @@ def race(case: str, *, quick: bool) -> list[Row]:
     """All solvers on one case."""
     entries = list(entrants(case, quick=quick))
     rows: list[Row] = [
-        {"peer": peer.name, "case": case, "settings": settings, "walls": []} for peer, settings in entries
+        {"peer": peer.name, "case": case, "settings": settings, "walls": [], "alone": []} for peer, settings in entries
     ]
     for _ in range(ROUNDS):
         for (peer, settings), row in zip(entries, rows, strict=True):
@@ -63,8 +63,9 @@ def race(case: str, *, quick: bool) -> list[Row]:
                 lap(peer, case, settings, row)
     for row in rows:
         # The first round compiles and fills caches.
-        walls = row["walls"][1:] or row["walls"]
-        row["wall"] = statistics.median(walls) if walls else None
+        for name, laps in (("wall", row["walls"]), ("wall_alone", row.pop("alone"))):
+            later = laps[1:] or laps
+            row[name] = statistics.median(later) if later else None
         words = f"{row['wall']} s, error {row['error']}, {row['notes']}"
         print(f"{row['peer']:32s} {case:4s} {row['settings']} {words}", flush=True)
     return rows
@@ -102,6 +103,8 @@ def lap(peer: Peer, case: str, settings: Row, row: Row) -> None:
     error = shape_error(run.rows, read_reference(DATA / f"{problem.name}.json"))
     row.update(error=error, notes=run.notes)
     row["walls"].append(run.wall)
+    if run.alone is not None:
+        row["alone"].append(run.alone)
 
 
 def machine() -> dict[str, str]:

@@ -104,12 +104,12 @@ class Forced:
     """(k,): of the stages; to be set on this class before every step."""
     _made_for = None
 
-    def _force_density(self, tangent, velocity, acceleration):
-        return super()._force_density(tangent, velocity, acceleration) + as_pair(self._sources()[0])
+    def film(self, tangent, velocity):
+        return super().film(tangent, velocity) + as_pair(self._sources()[0]).reshape(tangent.shape)
 
-    def _turning(self, unknowns, shear, motion):
+    def couple(self, angles, motion):
         is_change = motion.velocity_past.size == 0  # of fields, to which what does not depend on them adds nothing
-        return super()._turning(unknowns, shear if is_change else shear + self._sources()[1], motion)
+        return super().couple(angles, motion) + (0 if is_change else self._sources()[1])
 
     def _sources(self):
         if self._made_for is not Forced.times:

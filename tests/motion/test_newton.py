@@ -69,8 +69,8 @@ def test_the_stages_of_radau_are_solved_together(stages, zeta, form):
         motion = Motion(rates, past, np.zeros_like(past))
         guess = resting(np.repeat(start, stages, axis=0))
 
-        def renew(fields, trusted, equations=equations, size=size):
-            return Linearisation(equations, modes, size, Instant.of_stage(fields, stages // 2))
+        def renew(iterate, trusted, equations=equations, size=size):
+            return Linearisation(equations, modes, size, iterate.instant(stages // 2, None))
 
         solution, _ = solve_stages(equations, motion, guess, None, renew, 1e-11)
         assert solution is not None
@@ -86,8 +86,8 @@ def test_an_iteration_that_does_not_contract_says_so():
     equations, motion, start = one_step(1.0, 0.0, 0.3)
     modes = StageModes(np.array([1.0 + 0j]), np.ones((1, 1), complex), np.ones((1, 1), complex))
 
-    def renew(fields, trusted):
-        return Linearisation(equations, modes, 0.3, Instant.of_stage(fields, 0))
+    def renew(iterate, trusted):
+        return Linearisation(equations, modes, 0.3, iterate.instant(0, None))
 
     wild = start + np.random.default_rng(0).normal(scale=30.0, size=start.shape)
     solution, _ = solve_stages(equations, motion, resting(wild), None, renew, 1e-11)

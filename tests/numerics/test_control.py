@@ -107,6 +107,23 @@ def test_an_exact_zero_ends_the_search():
     assert bracketed_root(lambda x: x - 1.0, 0.0, 1.0, 1e-12) == 1.0
 
 
+@pytest.mark.parametrize("root", [0.1, 0.37, 0.93])
+def test_of_a_smooth_function_the_bracket_need_not_close(root):
+    calls = []
+
+    def function(x):
+        calls.append(x)
+        return np.expm1(x - root) + 0.3 * (x - root) ** 2
+
+    ends = (0.0, function(0.0)), (1.0, function(1.0))
+    closed = root_between(function, *ends, 1e-9)
+    needed = len(calls)
+    found = root_between(function, *ends, 1e-9, smooth=True)
+    assert found == pytest.approx(root, abs=1e-9)
+    assert closed == pytest.approx(root, abs=1e-9)
+    assert len(calls) - needed < needed - 2
+
+
 @pytest.mark.parametrize("root", [-1e-7, 1 + 1e-7])
 def test_a_root_just_beyond_an_end_is_found_at_that_end(root):
     found = root_between(lambda x: np.expm1(x - root), (0.0, -0.6), (1.0, 0.9), 1e-9)

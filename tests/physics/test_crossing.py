@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from rodloop_cli.physics.clearance import crossing_indicator, least_clearance
-from rodloop_cli.physics.crossing import crosses_itself, find_crossings
+from rodloop_cli.physics.crossing import crosses_itself, find_crossings, star_shaped
 
 
 def around(size=200, offset=0.37):
@@ -130,6 +130,20 @@ def test_figure_of_eight():
     assert crosses_itself(x, y)
     np.testing.assert_allclose(find_crossings(x, y), [[99.63, 199.63]], atol=0.01)
     assert crossing_indicator(x, y) < -1.0
+
+
+@pytest.mark.parametrize("shape", [peanut, horseshoe])
+@pytest.mark.parametrize("width", [0.9, 0.3, 0.05, 5e-3, -5e-3, -0.2])
+def test_what_is_seen_whole_from_its_centre_does_not_cross(shape, width):
+    x, y = shape(width)
+    if star_shaped(np.array([x + 3.0, y - 1.0])):
+        assert not crosses_itself(x, y)
+
+
+def test_several_loops_are_seen_from_their_own_centres_at_once():
+    loops = np.array([circle(), peanut(0.9), horseshoe(0.3), lemniscate()]).transpose(1, 0, 2)
+    apart = loops + np.array([[0.0, 5.0, -3.0, 2.0], [1.0, 0.0, 4.0, -6.0]])[..., None]
+    assert star_shaped(apart).tolist() == [True, True, False, False]
 
 
 def test_twice_around_is_no_convex_curve():

@@ -31,70 +31,120 @@ def dice():
     return np.random.default_rng(3)
 
 
-def anywhere(loop, dice, rates):
-    """Random unknowns and a random past of as many stages as there are ``rates``."""
+def boxes_of(loop):
+    return BoxEquations(MESH, RULE, loop.load)
+
+
+def anywhere(dice, rates):
+    """Random unknowns of the boxes, random forces and a random past of as many stages as there are ``rates``."""
     stages, inside = len(rates), (len(rates), MESH.cells, RULE.m)
     past = dice.normal(size=(2, 2, stages, MESH.cells, RULE.m + 1))
-    spins = dice.normal(size=(2, *inside))
-    return dice.normal(size=(stages, loop.size)), Motion(rates, *past, *spins)
+    force = dice.normal(size=past.shape[1:])
+    return dice.normal(size=(*inside[:2], NODAL + RULE.m)), force, Motion(rates, *past, *dice.normal(size=(2, *inside)))
+
+
+def moved(iterate, instant, correction):
+    """The iterate once its forces have come into balance and it has then been corrected."""
+    iterate.residual(instant)
+    iterate.correct(np.zeros_like(correction), instant)
+    iterate.residual(instant)
+    iterate.correct(correction, instant)
+    return iterate
+
+
+def settled(loop, unknowns, force, motion):
+    """What `moved` comes to without a correction: instant of stage 0, unknowns of the boxes, fields."""
+    iterate = loop.iterate(unknowns, force, motion)
+    instant = iterate.instant(0, None)
+    moved(iterate, instant, np.zeros((len(unknowns), loop.size)))
+    return iterate.instant(0, None), *iterate.solution(instant)
 
 
 def test_the_fields_are_those_of_the_boxes(loop, dice):
-    unknowns, motion = anywhere(loop, dice, dice.normal(size=(3, 3)))
-    fields = loop.fields(unknowns, motion)
-    boxes, stored = BoxEquations(MESH, RULE, loop.load), loop.expanded(unknowns, fields)
-    for one, other in zip(fields, boxes.fields(stored, motion), strict=True):
+    unknowns, force, motion = anywhere(dice, dice.normal(size=(3, 3)))
+    _, stored, fields = settled(loop, unknowns, force, motion)
+    for one, other in zip(fields, boxes_of(loop).fields(stored, motion), strict=True):
         np.testing.assert_allclose(one, other, atol=1e-12)
-    np.testing.assert_array_equal(loop.compressed(stored), unknowns)
+    np.testing.assert_array_equal(stored[:, 0, :NODAL], unknowns[:, 0, :NODAL])
+    np.testing.assert_array_equal(stored[..., NODAL:], unknowns[..., NODAL:])
 
 
 def test_what_is_left_is_what_the_last_box_misses(loop, dice):
-    unknowns, motion = anywhere(loop, dice, np.eye(2))
-    fields = loop.fields(unknowns, motion)
-    boxes, stored = BoxEquations(MESH, RULE, loop.load), loop.expanded(unknowns, fields)
-    missed, left = boxes.residual(stored, fields), loop.residual(unknowns, fields)
+    unknowns, force, motion = anywhere(dice, np.eye(2))
+    instant, stored, fields = settled(loop, unknowns, force, motion)
+    missed = boxes_of(loop).residual(stored, fields)
+    left = loop.iterate(stored, fields.force, motion).residual(instant)
     np.testing.assert_allclose(missed[:, :-1, :NODAL], 0, atol=1e-12)
     np.testing.assert_allclose(missed[:, -1, :NODAL], left[:, :NODAL], atol=1e-12)
     np.testing.assert_allclose(missed[..., NODAL:].reshape(2, -1), left[:, NODAL:], atol=1e-12)
 
 
+def test_an_instant_is_that_of_the_fields(loop, dice):
+    """Their own, or with forces that are given."""
+    unknowns, force, motion = anywhere(dice, np.eye(2))
+    _, stored, fields = settled(loop, unknowns, force, motion)
+    iterate = loop.iterate(stored, fields.force, motion)
+    for given in (None, force[:, 1]):
+        for found, expected in zip(iterate.instant(1, given), Instant.of_stage(fields, 1, given), strict=True):
+            np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
 def test_the_matrix_is_minus_the_derivative_of_the_residual(loop, dice):
     rate, step = 1.7, 1e-6
-    unknowns, motion = anywhere(loop, dice, np.array([[rate]]))
-    parts = loop.linearise(*Instant.of_stage(loop.fields(unknowns, motion), 0))
+    unknowns, force, motion = anywhere(dice, np.array([[rate]]))
+    instant, stored, fields = settled(loop, unknowns, force, motion)
+    parts = loop.linearise(*instant)
     matrix = sum(part * rate**power for part, power in zip(parts, (0, 2, 1), strict=False))
 
-    def residual(moved):
-        return loop.residual(moved, loop.fields(moved, motion))[0]
+    def residual(correction):
+        """Of the unknowns alone: the forces are those that balance them, not lifted."""
+        iterate = loop.iterate(stored, fields.force, motion)
+        iterate.residual(instant)
+        iterate.correct(correction[None], instant)
+        now = iterate.solution(instant)[0]
+        balanced = settled(loop, now, fields.force, motion)[2].force
+        return loop.iterate(now, balanced, motion).residual(instant)[0]
 
     for column, unit in enumerate(np.eye(loop.size)):
-        slope = (residual(unknowns + step * unit) - residual(unknowns - step * unit)) / (2 * step)
+        slope = (residual(step * unit) - residual(-step * unit)) / (2 * step)
         np.testing.assert_allclose(matrix[:, column], -slope, atol=1e-7, err_msg=str(column))
 
 
 def test_a_correction_changes_the_fields_as_its_linear_response_says(loop, dice):
     """Lifted forces, moments and angles after a small correction are those of the moved unknowns, to second order."""
-    unknowns, motion = anywhere(loop, dice, np.array([[1.7]]))
-    fields = loop.fields(unknowns, motion)
-    instant = Instant.of_stage(fields, 0)
+    unknowns, force, motion = anywhere(dice, np.array([[1.7]]))
+    instant, stored, fields = settled(loop, unknowns, force, motion)
     size = 1e-6
-    correction = size * dice.normal(size=unknowns.shape)
+    correction = size * dice.normal(size=(1, loop.size))
     if loop.load.zeta_perp:  # the drag's change with the direction of the rod is left to the next iteration
         correction[:, NODAL:] = 0
-    after = loop.corrected(fields, unknowns + correction, correction, motion, instant)
-    after = loop.finished(fields, after, correction, motion, instant)
-    for one, other in zip(after, loop.fields(unknowns + correction, motion), strict=True):
+    iterate = moved(loop.iterate(stored, fields.force, motion), instant, correction)
+    after_unknowns, after = iterate.solution(instant)
+    for one, other in zip(after, boxes_of(loop).fields(after_unknowns, motion), strict=True):
         np.testing.assert_allclose(one, other, atol=1e4 * size**2)
 
 
-def test_forces_that_are_in_balance_are_left_alone(loop, dice):
-    unknowns, motion = anywhere(loop, dice, np.array([[1.7]]))
-    fields = loop.fields(unknowns, motion)
-    again = loop.integrated(
-        unknowns, fields, motion, Instant(*dice.normal(size=(2, 1, 1)), *dice.normal(size=(2, 2, 1)))
-    )
-    for one, other in zip(again, fields, strict=True):
-        np.testing.assert_allclose(one, other, atol=1e-12)
+def test_how_far_a_correction_moves_the_rod(loop, dice):
+    unknowns, force, motion = anywhere(dice, np.array([[1.7]]))
+    instant, stored, fields = settled(loop, unknowns, force, motion)
+    iterate = loop.iterate(stored, fields.force, motion)
+    iterate.residual(instant)
+    size = iterate.correct(dice.normal(size=(1, loop.size)), instant)
+    assert size == pytest.approx(np.abs(iterate.solution(instant)[1].position - fields.position).max(), rel=1e-12)
+
+
+def test_forces_that_miss_their_balance_push_along_the_tangent_of_the_instant(loop, dice):
+    """A lifted force F and the balanced one B bend the rod by F·n + (B - F)·n0, n0 the normal of the instant."""
+    unknowns, force, motion = anywhere(dice, np.array([[1.7]]))
+    _, stored, fields = settled(loop, unknowns, force, motion)
+    instant = Instant(*dice.normal(size=(2, MESH.cells, RULE.m)), *dice.normal(size=(2, 2, MESH.cells, RULE.m)))
+    missing = 1e-3 * dice.normal(size=force.shape)
+    left = loop.iterate(stored, fields.force - missing, motion).residual(instant)
+    balanced = loop.iterate(stored, fields.force, motion).residual(instant)
+    turn = np.stack([instant.sine, -instant.cosine]) - np.stack([fields.sine[0], -fields.cosine[0]])
+    shear = (missing[:, 0, :, :-1] * turn).sum(axis=0)
+    expected = loop.turning(np.zeros((1, loop.size)), shear[None])[1][..., :-1]
+    np.testing.assert_allclose((left - balanced)[:, NODAL:], expected.reshape(1, -1), atol=1e-12)
 
 
 def test_an_extra_force_and_a_displacement_are_those_of_the_boxes(dice):
@@ -106,9 +156,8 @@ def test_an_extra_force_and_a_displacement_are_those_of_the_boxes(dice):
     boxes = BoxEquations(MESH, RULE, Load(3.8))
     systems = boxes.factored(np.ones(1, complex), *tangent, density, density)
     pushed_boxes = systems.solve_real(boxes.load_response(*tangent, density))
-    np.testing.assert_allclose(
-        loop.displacement(*tangent, pushed), boxes.displacement(*tangent, pushed_boxes), atol=1e-9
-    )
+    there = boxes.displacement(*tangent, pushed_boxes)
+    np.testing.assert_allclose(loop.displacement(*tangent, pushed), there.reshape(2, -1), atol=1e-9)
 
 
 def test_full_systems_solve_their_equations(dice):

@@ -25,12 +25,12 @@ RADAU = Peer(
     "Fourier reduced form, scipy Radau",
     partial(solve, method="Radau"),
     {
-        "H": grid_of(n=[17, 21], tol=[1e-3, 3e-4, 1e-4])
-        + grid_of(n=[25], tol=[1e-4, 3e-5, 1e-5])
-        + grid_of(n=[33], tol=[1e-5, 1e-6, 1e-7])
+        "H": grid_of(n=[17, 21], tol=[1e-3, 5e-4, 2e-4, 1e-4])
+        + grid_of(n=[25], tol=[1e-4, 5e-5, 2e-5, 1e-5])
+        + grid_of(n=[33], tol=[1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7])
         + grid_of(n=[41], tol=[1e-7, 1e-8]),
-        "P64": grid_of(n=[33], tol=[1e-3, 3e-4, 1e-4])
-        + grid_of(n=[41], tol=[1e-5, 1e-6])
+        "P64": grid_of(n=[33], tol=[1e-3, 5e-4, 2e-4, 1e-4])
+        + grid_of(n=[41], tol=[1e-5, 3e-6, 1e-6])
         + grid_of(n=[49], tol=[1e-6, 1e-7])
         + grid_of(n=[65], tol=[1e-7, 1e-8]),
     },
@@ -40,11 +40,12 @@ DOP853 = Peer(
     "Fourier reduced form, scipy DOP853",
     partial(solve, method="DOP853"),
     {
-        "H": grid_of(n=[17, 21, 25], tol=[1e-3, 1e-4])
+        "H": grid_of(n=[17, 19, 21, 23, 25], tol=[1e-3, 1e-4])
+        + grid_of(n=[29], tol=[1e-4])
         + grid_of(n=[33], tol=[1e-4, 1e-5])
         + grid_of(n=[41], tol=[1e-5, 1e-7])
         + grid_of(n=[49], tol=[1e-9]),
-        "P64": grid_of(n=[25, 33, 41, 49, 65], tol=[1e-3, 1e-5]),
+        "P64": grid_of(n=[25, 29, 33, 37, 41, 49, 65], tol=[1e-3, 1e-5]),
     },
     LIMIT + "; explicit: step bounded by stability (square of the number of points)",
 )

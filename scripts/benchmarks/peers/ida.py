@@ -56,14 +56,14 @@ PEER = Peer(
     "SUNDIALS IDA, index-2 Gauss collocation",
     solve,
     {
-        "H": grid_of(cells=[13, 17, 25], tol=[1e-6, 1e-7, 1e-8, 1e-9], max_order=[2]) + BOX + FAST,
-        "S": grid_of(cells=[9, 13, 17, 25], tol=[1e-4, 1e-5, 1e-6], max_order=[2])
+        "H": grid_of(cells=[13, 17, 25], tol=[1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 1e-9], max_order=[2]) + BOX + FAST,
+        "S": grid_of(cells=[9, 13, 17, 25], tol=[1e-4, 3e-5, 1e-5, 3e-6, 1e-6], max_order=[2])
         + grid_of(cells=[9], m=[5], tol=[1e-5, 1e-6], max_order=[2])
         + grid_of(cells=[25, 41], tol=[1e-7], max_order=[2])
         + BOX
         + FAST,
         "P64": grid_of(cells=[33, 49], tol=[1e-5, 1e-6, 1e-7, 1e-8, 1e-9], max_order=[2, 5]),
-        "D": grid_of(cells=[17, 33], tol=[1e-4, 1e-5, 1e-6, 1e-7], max_order=[2]) + FAST,
+        "D": grid_of(cells=[13, 17, 33], tol=[1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-7], max_order=[2]) + FAST,
     },
     "BDF of order 2; higher orders are unstable for undamped bending waves and creep or fail (listed to show it)",
 )

@@ -17,11 +17,15 @@ Solve = Callable[..., "Outcome"]
 
 @dataclass
 class Outcome:
-    """Wall seconds of set-up and integration (no imports, no compilation, no observables), and what came out."""
+    """Wall seconds of set-up and integration (no imports, no compilation, no observables), and what came out.
+
+    alone: where ``wall`` holds more than that, what is left without it.
+    """
 
     wall: float
     rows: list[Row]
     notes: str = ""
+    alone: float | None = None
 
 
 @dataclass(frozen=True)
