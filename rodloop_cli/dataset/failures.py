@@ -27,6 +27,8 @@ def _reason(error: Exception, path: Path, kept: Callable[[], str]) -> str:
     number = error.errno if isinstance(error, OSError) else None
     if not path.parent.is_dir():
         return f"the folder {path.parent} is gone; create it again or {_REMEDY}"
+    if number == errno.ENOENT:
+        return f"files of this run in {path.parent} are gone, removed by somebody else; start again or {_REMEDY}"
     if number in _FULL and isinstance(error, OSError):
         return f"the disk is full ({error.strerror}); free some room or {_REMEDY}{kept()}"
     if number in _FORBIDDEN:
