@@ -39,6 +39,11 @@ TARGET_WHEN_HARD = 5e-6
 such a run are short: with 1e-4, which is what tol = 1e-2 would give, five of 290 random runs came to where no step
 succeeds."""
 
+MANY_FAILURES = 20
+STAGES_WHEN_HARD = 3
+"""A hard run with that many failures goes on with fewer stages: its steps are limited by Newton's iteration, whose
+contraction suffers less from a step the fewer stages it couples."""
+
 SHORT = 1.0
 """Of the last step: a step that fails although it is shorter than this suffers from the gaps that the last one left.
 Closing them changes velocities by ε/Δt, and is left alone after a failure that only ends the growth of steps."""
@@ -87,17 +92,21 @@ class Marcher:
     """The march of one run; its attributes are all that a continued run needs to know.
 
     state: where the loop is;  base: the base shape (2, n, m + 1) on its mesh;  last: the predictor's memory;
-    proposal: the next step to try.
+    proposal: the next step to try;  stepper, controller: see `use_stages`.
     """
 
     def __init__(self, state: State, plan: Plan, refiner: Refiner, departure: Departure, work: Work) -> None:
         self.plan, self.work = plan, work
         self._refiner, self._departure = refiner, departure
-        self.stepper = RadauStepper(plan.stages, work, plan.iteration_error)
-        self.controller = Controller(plan.stages + 1)
+        self.use_stages(plan.stages)
         self.state, self.base = state, state.position
         self.last: Past | None = None
         self.proposal = plan.first
+
+    def use_stages(self, stages: int) -> None:
+        """Make the steps that follow with so many stages."""
+        self.stepper = RadauStepper(stages, self.work, self.plan.iteration_error)
+        self.controller = Controller(stages + 1)
 
     def __iter__(self) -> Iterator[Step]:
         """Accepted steps up to ``plan.t_end``.
@@ -114,13 +123,10 @@ class Marcher:
         """One step; None if it was rejected, or taken back to be done again on a finer mesh."""
         size = self._size()
         scale = self._departure.of(self.state, self.base)
-        target = TARGET_WHEN_HARD if self.work.newton_failures > FAILING * self.work.steps else np.inf
+        target = TARGET_WHEN_HARD if self._hard else np.inf
         step = self.stepper.step(self.state, self.last, size, self.plan.allowance(scale), target)
         if step is None:
-            self.work.newton_failures += 1
-            self.proposal = CUT_AFTER_FAILURE * size
-            if self.last is not None and size < SHORT * self.last.size:
-                self.state = self.state.closed()
+            self._failed(size)
             return None
         self.proposal = self._next(step)
         if step.error > 1:
@@ -134,6 +140,19 @@ class Marcher:
         self.work.steps += 1
         self.state, self.last = step.end, Past.of(step)
         return step
+
+    @property
+    def _hard(self) -> bool:
+        return self.work.newton_failures > FAILING * self.work.steps
+
+    def _failed(self, size: float) -> None:
+        """What follows a step on which Newton failed."""
+        self.work.newton_failures += 1
+        self.proposal = CUT_AFTER_FAILURE * size
+        if self.last is not None and size < SHORT * self.last.size:
+            self.state = self.state.closed()
+        if self._hard and self.work.newton_failures >= MANY_FAILURES and self.stepper.method.stages > STAGES_WHEN_HARD:
+            self.use_stages(STAGES_WHEN_HARD)
 
     def _next(self, step: Step) -> float:
         proposal = self.controller.factor(step.size, step.error) * step.size

@@ -35,7 +35,8 @@ def pack(marcher: Marcher | FixedMarcher) -> Arrays:
             arrays |= _pack_state("before", marcher.before)
         return arrays
     control = marcher.controller
-    arrays["march"] = np.array([marcher.proposal, control.last_size, control.last_error])
+    stages = marcher.stepper.method.stages
+    arrays["march"] = np.array([marcher.proposal, control.last_size, control.last_error, stages])
     return arrays | {"base": marcher.base} | _pack_stepper(marcher.stepper)
 
 
@@ -51,7 +52,8 @@ def unpack(marcher: Marcher | FixedMarcher, arrays: Arrays) -> None:
         if "before.time" in arrays:
             marcher.before = _unpack_state("before", arrays, equations)
         return
-    marcher.proposal, last_size, last_error = map(float, arrays["march"])
+    marcher.proposal, last_size, last_error, stages = map(float, arrays["march"])
+    marcher.use_stages(int(stages))
     marcher.controller = Controller(marcher.controller.exponent, last_size, last_error)
     marcher.base = arrays["base"]
     _unpack_stepper(marcher.stepper, arrays, equations)

@@ -3,7 +3,7 @@
 The error is the largest distance between the stored positions of a run and of the same run at tol/1000, up to the
 first crossing, after the rigid motion between the two shapes is taken out.
 
-    python -m scripts.benchmarks.tolerance [--random N] [--jumping N] [--tols 1e-3,1e-4,…]
+    python -m scripts.benchmarks.tolerance [--random N] [--consistent N] [--jumping N] [--tols 1e-3,1e-4,…]
 """
 
 import argparse
@@ -66,8 +66,26 @@ class Positions:
         self.attributes = dict(attributes)
 
 
+def consistent_cases(count: int, seed: int = 11) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Loops of all kinds whose moment does not jump at t = 0: contrast of stiffness, or a perturbation, not both."""
+    for i in range(count):
+        generator = np.random.default_rng(seed + i)
+        p = float(generator.choice([-1, 1, 1, 1]) * np.exp(generator.uniform(np.log(2), np.log(100))))
+        wave = RandomModes(amplitude=float(10 ** generator.uniform(-4, -2)), modes=(2, 8), seed=i)
+        stiffness = float(np.exp(generator.uniform(-2.3, 2.3)))
+        case = {
+            "p": p,
+            "density_ratio": float(np.exp(generator.uniform(-2.3, 2.3))),
+            "k": float(generator.uniform(0.2, 0.8)),
+            "zeta_perp": float(generator.choice([0.0, generator.uniform(0.1, 3)])),
+            "t_end": 8.0 / (1 + abs(p)) ** 0.75,
+        }
+        more = {"perturbation": (RandomPerturbation(random=wave),)} if i % 2 else {"stiffness_ratio": stiffness}
+        yield f"consistent {i}", case | more
+
+
 def random_cases(count: int, seed: int = 20260614) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Loops of all kinds: loads of both signs, contrasts up to 10, drag in half of them."""
+    """Loops with contrast of stiffness and a perturbation: loads of both signs, contrasts up to 10, drag in half."""
     generator = np.random.default_rng(seed)
     for i in range(count):
         p = float(generator.choice([-1, 1, 1, 1]) * np.exp(generator.uniform(np.log(2), np.log(100))))
@@ -127,7 +145,8 @@ def distance(shape: Array, other: Array) -> float:
 def main() -> None:
     """Print a table of error/tol and of the energy residual relative to the largest energy change."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--random", type=int, default=10)
+    parser.add_argument("--random", type=int, default=0, help="this many loops with both, whose moment jumps")
+    parser.add_argument("--consistent", type=int, default=10, help="this many loops without a jump of the moment")
     parser.add_argument("--jumping", type=int, default=0, help="this many loops with a jump of the moment")
     parser.add_argument("--tols", default="1e-3,1e-4,1e-5,1e-6")
     parser.add_argument("--tighter", type=float, default=TIGHTER, help="tolerance of the reference, over tol")
@@ -136,7 +155,12 @@ def main() -> None:
     options = parser.parse_args()
     known = [] if options.no_references else list(REFERENCES.items())
     rows = []
-    for name, case in [*known, *random_cases(options.random), *jumping_cases(options.jumping)]:
+    drawn = [
+        *consistent_cases(options.consistent),
+        *random_cases(options.random),
+        *jumping_cases(options.jumping),
+    ]
+    for name, case in [*known, *drawn]:
         for tol in map(float, options.tols.split(",")):
             run = solve(case, tol)
             ratio = error(run, solve(case, tol * options.tighter)) / tol
