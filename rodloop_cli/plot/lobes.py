@@ -7,14 +7,15 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from rodloop_cli.dataset.variables import LOBE_EVENT_ARCLENGTHS, LOBE_EVENT_FATES, LOBE_EVENT_TIMES
 from rodloop_cli.plot.axes import legend_above, plot_in_time, time_axis
 from rodloop_cli.plot.data import closed_arclength, closed_profile, times, values
 from rodloop_cli.plot.look import INK
 
-MARKS = {"coalescence": ("^", "#1b8a5a"), "collapse": ("v", "#b3261e")}
-"""Marker and colour of each fate."""
+MARKS = {"coalescence": ("^", "#6b3fa0"), "collapse": ("v", "#b3261e")}
+"""Marker and colour of each fate; no colour that a segment may have."""
 
 
 class Event(NamedTuple):
@@ -68,9 +69,13 @@ def mark_curvature(ax: Axes, dataset: xr.Dataset, frame: int, *, since: float = 
 
 def name_marks(ax: Axes, dataset: xr.Dataset) -> None:
     """A legend over the axes for the fates that occur."""
-    fates = sorted({event.fate for event in lobe_events(dataset)})
-    handles = [ax.plot([], [], **_mark(Event(0, 0, fate)), label=f"lobe lost by {fate}")[0] for fate in fates]
-    legend_above(ax, handles)
+    occur = {event.fate for event in lobe_events(dataset)}
+    legend_above(ax, [handle for fate, handle in fate_handles().items() if fate in occur])
+
+
+def fate_handles() -> dict[str, Line2D]:
+    """What a legend shows for each fate."""
+    return {fate: Line2D([], [], **_mark(Event(0, 0, fate)), label=f"lobe lost by {fate}") for fate in MARKS}
 
 
 def _between(dataset: xr.Dataset, since: float, until: float) -> list[Event]:

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rodloop_cli.plot import draw_energies
-from scripts.paper.panels import draw_buckling, draw_row, evenly, frames_at, letter, new_figure, title_of
+from scripts.paper.panels import draw_buckling, draw_row, evenly, frames_at, letter, name_fates, new_figure, title_of
 from scripts.paper.results import result
 
 NAMED = (0, 8.5, 10.6, 11.5, 12.3, 13.8, 14.4, 22.7, 23.4, 24.1)
@@ -51,4 +51,5 @@ def fig17() -> Figure:
         run = result(f"fig17{panel}")
         draw_row(ax, run, evenly(run), marks=True)
         letter(ax, panel, title_of(run))
+    name_fates(figure)
     return figure

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from rodloop_cli.plot import draw_dissipation, draw_energies, draw_forces, draw_shape, mark_lobe_events, milliseconds
+from rodloop_cli.plot.lobes import fate_handles
 from scripts.paper.results import result
 
 SPACING = 2.45
@@ -65,6 +66,12 @@ def draw_buckling(figure: Figure | SubFigure, names: Sequence[str], letters: str
         axes[1, column].set_xlabel("")
     for ax in axes[1:, 1:].flat:
         ax.set_ylabel("")
+    name_fates(figure)
+
+
+def name_fates(figure: Figure | SubFigure) -> None:
+    """A legend below the panels for the marks of `draw_row`."""
+    figure.legend(handles=list(fate_handles().values()), loc="outside lower center", ncols=2, frameon=False)
 
 
 def title_of(run: xr.Dataset) -> str:
