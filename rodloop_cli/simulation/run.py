@@ -22,7 +22,7 @@ from rodloop_cli.physics.lobes import find_lobes
 from rodloop_cli.simulation.amplification import Amplification
 from rodloop_cli.simulation.events import CrossingWatch, RestWatch
 from rodloop_cli.simulation.record import Recorder, Row
-from rodloop_cli.simulation.start import STARTING_TIME, Start, fastest_time, start
+from rodloop_cli.simulation.start import STARTING_TIME, Start, fastest_time, growth_time, start
 from rodloop_cli.simulation.summary import Summary
 
 Progress = Callable[[float], None]
@@ -166,7 +166,8 @@ def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:
     first *= STARTING_TIME * fastest_time(begun.load, begun.rod)
     longest = case.dt or case.t_end
     plan = Plan(case.t_end, case.tol, stages_for(case.tol), longest, min(first, longest))
-    return Marcher(begun.state, plan, Refiner(fixed=case.N is not None), begun.departure, work)
+    refiner = Refiner(fixed=case.N is not None, horizon=growth_time(begun.load, begun.rod))
+    return Marcher(begun.state, plan, refiner, begun.departure, work)
 
 
 def stages_for(tol: float) -> int:
