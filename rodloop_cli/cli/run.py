@@ -14,12 +14,6 @@ from rodloop_cli.cli.settings import current_settings
 if TYPE_CHECKING:
     from rodloop_cli.simulation import Run, Summary
 
-LARGE_SHARE = 0.05
-"""Of the energy that changes hands: a residual beyond this deserves a warning."""
-
-ROUND_OFF = 1e-6
-"""A smaller energy residual is that of rounded numbers, whatever its share."""
-
 
 @click.command()
 @case_file
@@ -51,22 +45,33 @@ def run(
 
     keep_freed_memory()
     prepared = Run.of(case)
-    if prepared.warning:
-        click.echo(f"warning: {prepared.warning}", err=True)
+    beforehand = [prepared.warning] if prepared.warning else []
+    warn(beforehand)
     summary = simulated(prepared, path, force=force, resume=resume)
     if not current_settings().quiet:
         click.echo("\n".join(told(summary)), err=True)
-    click.echo(json.dumps(found(summary, path)) if as_json else str(path))
+    warn(summary.warnings)
+    known = found(summary, path) | {"warnings": beforehand + summary.warnings}
+    click.echo(json.dumps(known) if as_json else str(path))
+
+
+def warn(texts: list[str]) -> None:
+    """Say them, however quiet the command is to be."""
+    for text in texts:
+        click.echo(f"warning: {text}", err=True)
 
 
 def simulated(run: Run, path: Path, *, force: bool, resume: bool) -> Summary:
     """Run to the end, with a progress bar and checkpoints."""
     from rodloop_cli.cli.progress import time_bar
+    from rodloop_cli.dataset.checkpoint import checkpoint_path
     from rodloop_cli.dataset.writer import RunWriter
     from rodloop_cli.simulation.resume import Keeper, resumed, signals_to
 
     recorder = run.recorder
     rows = resumed(path, run) if resume else 0
+    if resume and not rows and checkpoint_path(path).exists():
+        warn([f"{checkpoint_path(path)} is damaged, or of another case or version of rodloop: starting again"])
     writer = RunWriter(
         path, s=recorder.s, segment=recorder.segment, attributes=run.attributes, force=force, resume=rows
     )
@@ -87,12 +92,7 @@ def told(summary: Summary) -> list[str]:
         lines.append(f"first area minimum {area:.6g} at t = {time:.6g}")
     if summary.extrema.period is not None:
         lines.append(f"period {summary.extrema.period:.6g} (between minima of the area)")
-    share = summary.energy_residual / summary.energy_change if summary.energy_change else 0.0
-    lines.append(f"energy residual {summary.energy_residual:.1e}, {share:.1e} of the largest change")
-    if share > LARGE_SHARE and summary.energy_residual > ROUND_OFF:
-        lines.append("warning: much of the energy is lost to the steps; try a tighter tol (bdf2: a smaller dt, more N)")
-    if summary.warning:
-        lines.append(f"warning: {summary.warning}")
+    lines.append(f"energy residual {summary.energy_residual:.1e}, {summary.lost_share:.1e} of the largest change")
     lines.append(
         f"{work.steps} steps ({work.rejected} rejected, {work.newton_failures} failed), {summary.cells} cells, "
         f"{summary.seconds:.2f} s"

@@ -181,18 +181,20 @@ class RestWatch:
     Slowness alone is no proof: a strongly damped loop creeps. Once it is slow, the equilibrium nearest to its shape
     is found by the static solver; at rest means within ``tol`` of it. Asked again only after the loop has slowed down
     tenfold.
+
+    slow: the speed below which it is asked.
     """
 
     def __init__(self, tol: float) -> None:
         self._tol = tol
-        self._slow = tol
+        self.slow = tol
 
     def settled(self, state: State) -> bool:
         """Whether this state is at rest."""
         speed = float(np.abs(state.velocity).max())
-        if speed > self._slow:
+        if speed > self.slow:
             return False
-        self._slow = speed / 10
+        self.slow = speed / 10
         try:
             equilibrium = relax(state.equations, state.unknowns)
         except ConvergenceError:

@@ -24,6 +24,9 @@ from rodloop_cli.march.memory import pack, unpack
 if TYPE_CHECKING:
     from rodloop_cli.simulation.run import Run
 
+FORMAT = 2
+"""Of the arrays in a checkpoint: raised when they change, so that an older one is not taken for one of today."""
+
 SECONDS_BETWEEN = 5.0
 """Between checkpoints: what a kill costs at most."""
 
@@ -75,7 +78,7 @@ def signals_to(keeper: Keeper) -> Iterator[None]:
 
 def run_key(run: Run) -> str:
     """What a checkpoint belongs to: the resolved case and the program that made it."""
-    return f"{run.case.sha256} {versions()}"
+    return f"{run.case.sha256} {FORMAT} {versions()}"
 
 
 def resumed(output: Path, run: Run) -> int:
@@ -88,6 +91,7 @@ def resumed(output: Path, run: Run) -> int:
     for name, value in zip(names, arrays["work"], strict=True):
         setattr(run.work, name, int(value))
     run.recorder.restore(arrays["recorder"])
+    run.rest.slow = float(arrays["rest"][0])
     run.summary.amplification.restore(arrays["amplification"])
     extrema = run.summary.extrema
     extrema.minima = [(float(t), float(a)) for t, a in arrays["minima"]]
@@ -104,6 +108,7 @@ def packed(run: Run, rows: int) -> Arrays:
     return pack(run.marcher) | {
         "work": np.array(list(asdict(run.work).values()), dtype=float),
         "recorder": run.recorder.memory(),
+        "rest": np.array([run.rest.slow]),
         "amplification": summary.amplification.memory(),
         "minima": np.array(summary.extrema.minima).reshape(-1, 2),
         "maxima": np.array(summary.extrema.maxima).reshape(-1, 2),

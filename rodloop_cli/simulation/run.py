@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from math import pi
 from typing import Protocol
 
 import numpy as np
@@ -22,26 +23,26 @@ from rodloop_cli.physics.lobes import find_lobes
 from rodloop_cli.simulation.amplification import Amplification
 from rodloop_cli.simulation.events import CrossingWatch, RestWatch
 from rodloop_cli.simulation.record import Recorder, Row
-from rodloop_cli.simulation.start import STARTING_TIME, Start, fastest_time, growth_time, start
+from rodloop_cli.simulation.start import Start, fastest_time, growth_time, start, waves_of
 from rodloop_cli.simulation.summary import Summary
 
 Progress = Callable[[float], None]
 """Told the time reached, after every step."""
 
-FIRST_STEP, FIRST_STEP_WITHOUT_JUNCTIONS = 100.0, 3000.0
-"""First step proposed, in units of the starting step. Junctions of stiffness meet the load with waves of every length,
-and need short ones."""
+FIRST_STEP, FIRST_STEP_WITHOUT_JUNCTIONS = 0.01, 0.3
+"""First step proposed, over the time of the fastest motion that the load starts. Junctions of stiffness meet the load
+with waves of every length, and need short ones."""
 
 REST = 1e-6
 """Distance from an equilibrium at which a run of fixed steps has settled."""
 
 
-JUMPING_MOMENT = (
-    "the perturbation makes the bending moment jump at the stiffness junctions at t = 0: bending waves of every length "
-    "start there; positions are good to tol or some 1e-3 of the amplitude, whichever is more, and forces and energies "
-    "miss the waves that are too short for the steps"
-)
-"""Measured on loops of stiffness ratio 2 to 14 and amplitude 1e-3 to 4e-2, see docs/accuracy.md."""
+KINKED = "the perturbation kinks the loop at its stiffness junctions: "
+JUMPING_MOMENT = {
+    "radau": f"{KINKED}positions are good to tol or 1e-3 of its amplitude, energies to less; compare with tol/10",
+    "bdf2": f"{KINKED}short waves are lost, and their energy; compare with half dt and twice N",
+}
+"""By scheme. Measured on loops of stiffness ratio 2 to 14 and amplitude 1e-3 to 4e-2, see docs/accuracy.md."""
 
 
 class BetweenSteps(Protocol):
@@ -59,6 +60,7 @@ class Run:
     begun: Start
     marcher: Marcher | FixedMarcher
     recorder: Recorder
+    rest: RestWatch
     summary: Summary
 
     @classmethod
@@ -67,8 +69,8 @@ class Run:
         begun = start(case)
         work = Work()
         recorder = Recorder(begun.rod, begun.load, case.output_points, case.times)
-        summary = Summary(work, Amplification(begun.rod, begun.load))
-        return cls(case, begun, _marcher(case, begun, work), recorder, summary)
+        summary = Summary(work, Amplification(begun.rod, begun.load), energies=pi * (1 + abs(case.p)))
+        return cls(case, begun, _marcher(case, begun, work), recorder, RestWatch(case.tol or REST), summary)
 
     @property
     def work(self) -> Work:
@@ -86,7 +88,8 @@ class Run:
     @property
     def warning(self) -> str:
         """What makes this run less accurate than others, as far as that is known beforehand; empty if nothing."""
-        return JUMPING_MOMENT if self.case.perturbation and self.begun.rod.has_stiffness_contrast else ""
+        disturbed = any(wave.amplitude for wave in waves_of(self.case))
+        return JUMPING_MOMENT[self.case.scheme] if disturbed and self.begun.rod.has_stiffness_contrast else ""
 
     def into(self, sink: RowSink, progress: Progress | None = None, between: BetweenSteps | None = None) -> Summary:
         """Run to the end, or to the event that stops it, and close the sink with the outcome.
@@ -103,7 +106,7 @@ class Run:
         return self.summary
 
     def _follow(self, sink: RowSink, progress: Progress | None, between: BetweenSteps | None) -> str:
-        crossing, rest = CrossingWatch(), RestWatch(self.case.tol or REST)
+        crossing = CrossingWatch()
         if not self.recorder.begun:
             for row in self.recorder.start(self.begun.step):
                 self._store(row, sink)
@@ -113,7 +116,7 @@ class Run:
                 progress(step.start.time + step.size if stopped is None else stopped)
             if stopped is not None:
                 return f"stopped at first crossing, t = {stopped:.4g}"
-            if "settled" in self.case.stop_at and rest.settled(self.marcher.state):
+            if "settled" in self.case.stop_at and self.rest.settled(self.marcher.state):
                 return f"settled at an equilibrium, t = {self.marcher.state.time:.4g}"
             if between:
                 between.after_step()
@@ -152,8 +155,8 @@ class Run:
         account, summary = self.recorder.account, self.summary
         summary.energy_residual, summary.energy_change = account.largest_residual, account.largest_change
         outcome = outcome_attributes(summary.outcome, summary.totals)
-        warnings = [text for text in (self.warning, summary.warning) if text]
-        warned: dict[str, Attribute] = {"warning": ". ".join(warnings)} if warnings else {}
+        warnings = [self.warning] * bool(self.warning) + summary.warnings
+        warned: dict[str, Attribute] = {"warning": "; ".join(warnings)} if warnings else {}
         sink.finish(outcome | summary.findings | summary.lobe_events | warned)
 
 
@@ -163,7 +166,7 @@ def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:
         return FixedMarcher(begun.state, case.t_end, case.dt, work)
     assert case.tol is not None
     first = FIRST_STEP if begun.rod.has_stiffness_contrast else FIRST_STEP_WITHOUT_JUNCTIONS
-    first *= STARTING_TIME * fastest_time(begun.load, begun.rod)
+    first *= fastest_time(begun.load, begun.rod)
     longest = case.dt or case.t_end
     plan = Plan(case.t_end, case.tol, stages_for(case.tol), longest, min(first, longest))
     refiner = Refiner(fixed=case.N is not None, horizon=growth_time(begun.load, begun.rod))

@@ -12,9 +12,17 @@ from rodloop_cli.simulation.amplification import SUSPICIOUS, Amplification
 from rodloop_cli.simulation.events import AreaExtrema
 
 AMPLIFIED = (
-    "a segment is compressed so far beyond its buckling load that waves grew {excess:.0e} times as much as the motion, "
-    "out of errors too: shapes may be off by many tol; compare with tol/100, or perturb the modes that are to grow"
+    "buckling waves grew {excess:.0e} times more than the motion, out of errors too: compare with tol/100 before you "
+    "trust the shapes"
 )
+
+LOST = "the steps lost {share:.0%} of the energy that changed hands: try a tighter tol (bdf2: a smaller dt, more N)"
+LARGE_SHARE = 0.05
+"""Of the energy that changes hands: a residual beyond this deserves a warning."""
+
+ROUND_OFF, ROUND_OFF_SHARE = 1e-6, 1e-8
+"""An energy residual below the first, or below this share of the energies of the circle, is that of rounded numbers
+(above all of the forces at t = 0), whatever its share of what changes hands."""
 
 
 @dataclass
@@ -23,6 +31,8 @@ class Summary:
 
     work: Work
     amplification: Amplification
+    energies: float
+    """Of the circle, bending and surface, in B1/R."""
     extrema: AreaExtrema = field(default_factory=AreaExtrema)
     lobes: LobeWatch = field(default_factory=LobeWatch)
     outcome: str = ""
@@ -45,10 +55,19 @@ class Summary:
         return {**asdict(self.work), "cells": self.cells, "wall_seconds": self.seconds}
 
     @property
-    def warning(self) -> str:
-        """What the run has shown of its own accuracy; empty if nothing."""
-        excess = self.amplification.excess
-        return AMPLIFIED.format(excess=excess) if excess > SUSPICIOUS else ""
+    def lost_share(self) -> float:
+        """The energy residual over the largest change of energy."""
+        return self.energy_residual / self.energy_change if self.energy_change else 0.0
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the run has shown of its own accuracy."""
+        shown = []
+        if self.lost_share > LARGE_SHARE and self.energy_residual > max(ROUND_OFF, ROUND_OFF_SHARE * self.energies):
+            shown.append(LOST.format(share=self.lost_share))
+        if self.amplification.excess > SUSPICIOUS:
+            shown.append(AMPLIFIED.format(excess=self.amplification.excess))
+        return shown
 
     @property
     def findings(self) -> dict[str, int | float]:

@@ -9,12 +9,15 @@ from rodloop_cli.case import parse_case
 from rodloop_cli.dataset import RunWriter, open_run
 from rodloop_cli.dataset.checkpoint import checkpoint_path
 from rodloop_cli.errors import Interrupted
+from rodloop_cli.march.loop import Marcher
 from rodloop_cli.simulation import Run
 from rodloop_cli.simulation.resume import Keeper, resumed
 
 CASES = {
     "radau": "p: 3.8\nstiffness_ratio: 5\nt_end: 1.5\nzeta_perp: 0.3\ntol: 1e-4\n",
     "refined": "p: 16\nt_end: 0.9\ntol: 1e-5\nperturbation: [{mode: 3, amplitude: 1e-2}]\n",
+    "hard": "p: 0\nt_end: 0.05\ntol: 1e-2\nperturbation: [{mode: 20, amplitude: 0.0075}]\n",
+    "settled": "p: 1\nzeta_perp: 300\nstiffness_ratio: 2\nt_end: 3000\ndt: 5\nstop_at: [settled]\n",
     "bdf2": "p: 3.8\nt_end: 0.5\nscheme: bdf2\nN: 40\ndt: 0.01\nperturbation: [{mode: 2, amplitude: 1e-2}]\n",
 }
 
@@ -38,11 +41,25 @@ def interrupted_after(steps: int, path: Path, text: str) -> None:
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_continued_run_equals_the_uninterrupted_one(tmp_path: Path, name: str) -> None:
+    continued_equals_uninterrupted(tmp_path, name, steps=40 if name == "settled" else 7)
+
+
+def test_so_does_one_that_goes_on_with_fewer_stages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a run does on which Newton fails often: here the first failure is taken to be the last straw."""
+    monkeypatch.setattr("rodloop_cli.march.loop.MANY_FAILURES", 1)
+    used = []
+    use_stages = Marcher.use_stages
+    monkeypatch.setattr(Marcher, "use_stages", lambda marcher, n: used.append(n) or use_stages(marcher, n))
+    continued_equals_uninterrupted(tmp_path, "hard", steps=7)
+    assert used.count(3) >= 3
+
+
+def continued_equals_uninterrupted(tmp_path: Path, name: str, steps: int) -> None:
     whole, path = tmp_path / "whole.nc", tmp_path / "parts.nc"
     run = Run.of(parse_case(CASES[name]))
     with writer_of(whole, run) as writer:
         run.into(writer)
-    interrupted_after(7, path, CASES[name])
+    interrupted_after(steps, path, CASES[name])
     assert checkpoint_path(path).exists()
 
     again = Run.of(parse_case(CASES[name]))
