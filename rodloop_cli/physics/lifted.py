@@ -138,7 +138,9 @@ class LoopIterate:
         return float(np.abs(self._position - before).max())
 
     def _force_response(self, correction: Array, moved: Array) -> Array:
-        """(2, s, P): change of the forces when the loop turns by ``correction`` and is ``moved`` (2, s, P)."""
+        """(2, s, P): change of the forces when the loop turns by ``correction`` and is ``moved`` (2, s, P); but for the
+        drag's change with the direction of the rod, which the next residual brings.
+        """
         points, load = self._points, self._loop.load
         inside = moved[..., :points]
         densities = np.empty_like(self._densities)
