@@ -133,7 +133,7 @@ class BoxEquations(Balance):
         return response
 
     def _add_drag_response(self, density: Array, position: Array, cosine: Array, sine: Array, velocity: Array) -> None:
-        """Derivative of `_drag` by position (with λ, part 2) and by angle (part 0)."""
+        """Derivative of `drag` by position (with λ, part 2) and by angle (part 0)."""
         zeta, excess = self.load.zeta_perp, self.load.zeta_perp * (self.load.gamma - 1)
         c, s = cosine[..., None], sine[..., None]
         dx, dy = position[:, :, :-1]
