@@ -52,6 +52,7 @@ MUTATIONS: dict[str, tuple[Replacement, ...]] = {
         ("acceleration without its past", "acceleration += motion.acceleration_past", "pass"),
         ("acceleration from the wrong field", "motion.rates @ velocity.reshape", "motion.rates @ position.reshape"),
         ("rotary inertia, sign", "couple: Array = self._density", "couple: Array = -self._density"),
+        ("response of the couple, sign", "response: Array = self._density", "response: Array = -self._density"),
         ("rotary inertia of the wrong order", "(motion.rates @ spin.reshape(flat))", "spin.reshape(flat)"),
     ),
     "boxes.py": (
@@ -128,7 +129,8 @@ MUTATIONS: dict[str, tuple[Replacement, ...]] = {
             "self._densities[..., -1] = 0",
         ),
         ("loop not closed", "np.subtract(self._position[..., -1].T", "np.subtract(0 * self._position[..., -1].T"),
-        ("couple dropped", "self._add_couple(self._unknowns, self._motion)", "pass"),
+        ("couple dropped", "self._shear += couple.reshape", "couple.reshape"),
+        ("lifted moment, couple dropped", "self._shear += response.reshape", "response.reshape"),
     ),
 }
 

@@ -142,6 +142,13 @@ class Balance(ABC):
         couple: Array = self._density * self.load.rotary_inertia * _spin_rate(angles, motion)
         return couple
 
+    def couple_response(self, correction: Array, rates: Array) -> Array:
+        """(k, n, m): change of the `couple` by a ``correction`` (k, n, m) of the angles; ``rates`` as in `Motion`."""
+        flat = (len(rates), -1)
+        spin_rate = (rates @ (rates @ correction.reshape(flat))).reshape(correction.shape)
+        response: Array = self._density * self.load.rotary_inertia * spin_rate
+        return response
+
     def turning(self, unknowns: Array, shear: Array) -> tuple[Array, Array]:
         """Moment and angle (k, n, m + 1) by (13), from the shear Fx sin θ - Fy cos θ (k, n, m) and the couple."""
         moment = self._integral(shear)

@@ -29,9 +29,6 @@ from rodloop_cli.physics.equations import (
 from rodloop_cli.physics.loop_integrals import LoopIntegrals
 from rodloop_cli.physics.rod import Array
 
-_STILL = np.zeros(1)
-"""The past of a change of the angles."""
-
 
 class LoopIterate:
     """The s stages of a step: the loop's unknowns, and forces of their own.
@@ -101,7 +98,9 @@ class LoopIterate:
         missing *= self._frozen_normal
         shear += missing
         np.add(shear[0], shear[1], out=self._shear)
-        self._add_couple(self._unknowns, self._motion)
+        if self._loop.load.rotary_inertia:
+            couple = self._loop.couple(self._loop.angles(self._unknowns), self._motion)
+            self._shear += couple.reshape(self._shear.shape)
         out: Array = self._arguments @ self._loop.to_residual
         np.subtract(self._position[..., -1].T, self._unknowns[:, POSITION], out=out[:, POSITION])
         np.subtract(force[..., -1].T, self._unknowns[:, FORCE], out=out[:, FORCE])
@@ -151,10 +150,6 @@ class LoopIterate:
         densities[..., -1] = correction[:, FORCE].T
         return _product(densities, self._loop.to_force)
 
-    def _add_couple(self, unknowns: Array, motion: Motion) -> None:
-        if self._loop.load.rotary_inertia:
-            self._shear += self._loop.couple(self._loop.angles(unknowns), motion).reshape(self._shear.shape)
-
     def solution(self, instant: Instant) -> tuple[Array, Fields]:
         """The unknowns of the boxes (s, n, 6 + m) and the fields, by cells."""
         loop, by_cells = self._loop, self._loop.by_cells
@@ -174,7 +169,9 @@ class LoopIterate:
         shear += along * self._correction[:, NODAL:]
         self._shear += shear[0]
         self._shear += shear[1]
-        self._add_couple(self._correction, Motion(self._motion.rates, NOTHING, NOTHING, _STILL, _STILL))
+        if self._loop.load.rotary_inertia:
+            response = self._loop.couple_response(self._loop.angles(self._correction), self._motion.rates)
+            self._shear += response.reshape(self._shear.shape)
 
     def _by_boxes(self, fields: Fields) -> Array:
         out = np.empty((self._stages, self._loop.mesh.cells, NODAL + self._loop.rule.m))

@@ -17,7 +17,8 @@ LOADS = {
     "film": Load(3.8),
     "isotropic drag": Load(-2.0, 1.3, 1.0),
     "drag": Load(3.8, 1.3, 0.4),
-    "rotary inertia": Load(3.8, 0.7, 0.2, 0.05),
+    "rotary inertia": Load(3.8, rotary_inertia=0.05),
+    "rotary inertia and drag": Load(3.8, 0.7, 0.2, 0.05),
 }
 
 
