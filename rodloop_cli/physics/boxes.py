@@ -226,13 +226,13 @@ class BoxIterate:
         """(s, n, 6 + m)."""
         return self._boxes.residual(self._unknowns, self._fields)
 
-    def correct(self, correction: Array, instant: Instant) -> float:
+    def correct(self, correction: Array) -> float:
         """Add a ``correction`` (s, n, 6 + m); how far it moves the rod."""
         before = self._fields.position
         self._unknowns = self._unknowns + correction
         self._fields = self._boxes.fields(self._unknowns, self._motion)
         return float(np.abs(self._fields.position - before).max())
 
-    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+    def solution(self) -> tuple[Array, Fields]:
         """Unknowns and fields."""
         return self._unknowns, self._fields

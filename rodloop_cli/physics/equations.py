@@ -96,7 +96,11 @@ class Instant(NamedTuple):
 
 
 class Iterate(Protocol):
-    """All stages of a step, while Newton's iteration works on them."""
+    """All stages of a step, while Newton's iteration works on them.
+
+    An iteration is `residual`, then `correct`; after the last one comes `solution`, once. Both refer to the instant of
+    the last `residual`.
+    """
 
     def instant(self, stage: int, force: Array | None) -> Instant:
         """One of them, see `Instant.of_stage`."""
@@ -104,10 +108,10 @@ class Iterate(Protocol):
     def residual(self, instant: Instant) -> Array:
         """(s, …): by how much they miss the equations, with ``instant`` where these are linearised."""
 
-    def correct(self, correction: Array, instant: Instant) -> float:
+    def correct(self, correction: Array) -> float:
         """Add a ``correction`` (s, …); how far it moves the rod."""
 
-    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+    def solution(self) -> tuple[Array, Fields]:
         """The unknowns of the boxes (s, n, 6 + m) and the fields, after a last correction."""
 
 

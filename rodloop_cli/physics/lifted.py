@@ -85,6 +85,7 @@ class LoopIterate:
         self._instant, cosine, sine = instant, instant.cosine.ravel(), instant.sine.ravel()
         self._frozen_tangent, self._frozen_normal = np.array([[[cosine], [sine]], [[sine], [-cosine]]])
         self._frozen_pressure = self._frozen_tangent * self._loop.load.p
+        self._frozen_force = instant.force.reshape(2, 1, -1)
 
     def residual(self, instant: Instant) -> Array:
         """(s, 6 + N): by how much the loop fails to close, then the integral of M/b the angle.
@@ -121,9 +122,8 @@ class LoopIterate:
         self._densities[..., -1] = self._unknowns[:, FORCE].T
         return _product(self._densities, loop.to_force)
 
-    def correct(self, correction: Array, instant: Instant) -> float:
+    def correct(self, correction: Array) -> float:
         """Add a ``correction`` (s, 6 + N), and to the forces their linear response; how far it moves the rod."""
-        self._freeze(instant)
         turned = np.empty_like(self._slopes)
         np.multiply(self._frozen_normal, -correction[:, NODAL:], out=turned[..., :-1])
         turned[..., -1] = correction[:, POSITION].T
@@ -150,10 +150,10 @@ class LoopIterate:
         densities[..., -1] = correction[:, FORCE].T
         return _product(densities, self._loop.to_force)
 
-    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+    def solution(self) -> tuple[Array, Fields]:
         """The unknowns of the boxes (s, n, 6 + m) and the fields, by cells."""
         loop, by_cells = self._loop, self._loop.by_cells
-        self._add_response_of_shear(instant)
+        self._add_response_of_shear()
         shape = (self._stages, loop.mesh.cells, -1)
         moment, theta = loop.turning(self._unknowns, self._shear.reshape(shape))
         position = self._position.take(by_cells, axis=-1)
@@ -162,10 +162,10 @@ class LoopIterate:
         fields = Fields(self._tangent.reshape(2, *shape), position, velocity, acceleration, force, moment, theta)
         return self._by_boxes(fields), fields
 
-    def _add_response_of_shear(self, instant: Instant) -> None:
+    def _add_response_of_shear(self) -> None:
         """Moments and angles, too, respond to the last correction linearly."""
         shear = self._response[..., : self._points] * self._frozen_normal
-        along = instant.force.reshape(2, 1, -1) * self._frozen_tangent
+        along = self._frozen_force * self._frozen_tangent
         shear += along * self._correction[:, NODAL:]
         self._shear += shear[0]
         self._shear += shear[1]
