@@ -44,10 +44,6 @@ STAGES_WHEN_HARD = 3
 """A hard run with that many failures goes on with fewer stages: its steps are limited by Newton's iteration, whose
 contraction suffers less from a step the fewer stages it couples."""
 
-SHORT = 1.0
-"""Of the last step: a step that fails although it is shorter than this suffers from the gaps that the last one left.
-Closing them changes velocities by ε/Δt, and is left alone after a failure that only ends the growth of steps."""
-
 
 @dataclass(frozen=True)
 class Plan:
@@ -146,10 +142,14 @@ class Marcher:
         return self.work.newton_failures > FAILING * self.work.steps
 
     def _failed(self, size: float) -> None:
-        """What follows a step on which Newton failed."""
+        """What follows a step on which Newton failed.
+
+        One that fails although it is shorter than the last suffers from the gaps that the last one left. Closing them
+        changes velocities by ε/Δt, and is left alone after a failure that only ends the growth of steps.
+        """
         self.work.newton_failures += 1
         self.proposal = CUT_AFTER_FAILURE * size
-        if self.last is not None and size < SHORT * self.last.size:
+        if self.last is not None and size < self.last.size:
             self.state = self.state.closed()
         if self._hard and self.work.newton_failures >= MANY_FAILURES and self.stepper.method.stages > STAGES_WHEN_HARD:
             self.use_stages(STAGES_WHEN_HARD)

@@ -38,7 +38,7 @@ LEAST_TARGET = 3e-14
 
 
 class RadauStepper:
-    """Makes steps; remembers the linearisation and the last step, which only speed it up."""
+    """Makes steps; remembers the linearisation and how fast it contracted, which only speeds it up."""
 
     def __init__(self, stages: int, work: Work, iteration_error: float = ITERATION_ERROR) -> None:
         self.method = radau_iia(stages)

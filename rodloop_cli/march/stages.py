@@ -99,14 +99,14 @@ def solve_stages(
     renewals = 0
     last, contraction = np.inf, 0.0
     for iteration in range(1, MAX_ITERATIONS + 1):
-        instant = linearisation.instant
-        size = iterate.correct(linearisation.correction(iterate.residual(instant)), instant)
+        residual = iterate.residual(linearisation.instant)
+        size = iterate.correct(linearisation.correction(residual))
         if not np.isfinite(size):
             break
         if iteration > 1:
             contraction = size / last
         if size < CERTAIN * target or (iteration > 1 and _converged(size, contraction, target)):
-            return Solution(*iterate.solution(instant), iteration, contraction), linearisation
+            return Solution(*iterate.solution(), iteration, contraction), linearisation
         if iteration > 1:
             too_slow = contraction >= 1 or _hopeless(size, contraction, target, MAX_ITERATIONS - iteration)
             if (too_slow or contraction > SLOW) and contraction < DIVERGING and renewals < MOST_RENEWALS:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from rodloop_cli.numerics.gauss import Array, lagrange_matrix
+from rodloop_cli.numerics.gauss import Array
 
 Complex = NDArray[np.complex128]
 
@@ -73,14 +73,6 @@ def embedded_weights(nodes: Array, inverse: Array, real_eigenvalue: float) -> Ar
     weight_change = np.linalg.solve(np.vander(nodes, increasing=True).T, moments)
     weights: Array = real_eigenvalue * inverse.T @ weight_change
     return weights
-
-
-def extrapolation(nodes: Array, ratio: float) -> Array:
-    """(s, nodes): the polynomial through values at ``nodes`` of the last step, at the stages of a next step ratio
-    times as long.
-    """
-    stages = nodes[nodes > 0]
-    return lagrange_matrix(nodes, 1 + ratio * stages)
 
 
 def _right_radau_points(stages: int) -> Array:

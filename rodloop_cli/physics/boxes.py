@@ -16,10 +16,13 @@ from rodloop_cli.errors import SingularSystem
 from rodloop_cli.numerics.condensed import CondensedSystems
 from rodloop_cli.numerics.gauss import GaussRule
 from rodloop_cli.physics.equations import (
+    FORCE,
     FX,
     FY,
     MOMENT,
     NODAL,
+    NOTHING,
+    POSITION,
     THETA,
     Balance,
     Complex,
@@ -29,6 +32,7 @@ from rodloop_cli.physics.equations import (
     Motion,
     X,
     Y,
+    kinematics,
 )
 from rodloop_cli.physics.rod import Array, Mesh
 
@@ -53,11 +57,38 @@ class BoxEquations(Balance):
         """(k, n, m): a view."""
         return unknowns[..., NODAL:]
 
-    def _start(self, unknowns: Array, components: slice | int) -> Array:
-        start = unknowns[..., components]
-        if isinstance(components, int):
-            return start[..., None]
-        return start.transpose(start.ndim - 1, *range(start.ndim - 1))[..., None]
+    def fields(self, unknowns: Array, motion: Motion | None) -> Fields:
+        """Integrate (10)-(13) from ``unknowns`` of k instants; ``motion=None`` is statics."""
+        tangent, position = self.shape(unknowns)
+        velocity, acceleration = (NOTHING, NOTHING) if motion is None else kinematics(position, motion)
+        force = self._integral(self._force_density(tangent, velocity, acceleration))
+        force += _pair(unknowns, FORCE)
+        shear = force[0, ..., :-1] * tangent[1]
+        shear -= force[1, ..., :-1] * tangent[0]
+        if self.load.rotary_inertia and motion is not None:
+            shear += self.couple(self.angles(unknowns), motion)
+        moment, theta = self.turning(unknowns, shear)
+        return Fields(tangent, position, velocity, acceleration, force, moment, theta)
+
+    def shape(self, unknowns: Array) -> tuple[Array, Array]:
+        """Tangent (2, k, n, m) at the Gauss points; position (2, k, n, m + 1) there and at the right ends, by (10)."""
+        theta = self.angles(unknowns)
+        tangent = np.empty((2, *theta.shape))
+        np.cos(theta, out=tangent[0])
+        np.sin(theta, out=tangent[1])
+        position = self._integral(tangent)
+        position += _pair(unknowns, POSITION)
+        return tangent, position
+
+    def _force_density(self, tangent: Array, velocity: Array, acceleration: Array) -> Array:
+        """(2, k, n, m): F' by (11) and (12)."""
+        density = self.film(tangent, velocity[..., :-1])
+        if acceleration.size:
+            density += self._density * acceleration[..., :-1]
+        return density
+
+    def _start(self, unknowns: Array, component: int) -> Array:
+        return unknowns[..., component, None]
 
     def _integral(self, values: Array) -> Array:
         integral: Array = (values * self._length) @ self._integrate
@@ -133,7 +164,7 @@ class BoxEquations(Balance):
         return response
 
     def _add_drag_response(self, density: Array, position: Array, cosine: Array, sine: Array, velocity: Array) -> None:
-        """Derivative of `_drag` by position (with λ, part 2) and by angle (part 0)."""
+        """Derivative of `drag` by position (with λ, part 2) and by angle (part 0)."""
         zeta, excess = self.load.zeta_perp, self.load.zeta_perp * (self.load.gamma - 1)
         c, s = cosine[..., None], sine[..., None]
         dx, dy = position[:, :, :-1]
@@ -174,6 +205,12 @@ class BoxEquations(Balance):
         return out
 
 
+def _pair(unknowns: Array, components: slice) -> Array:
+    """(2, k, n, 1): position or force at the left nodes."""
+    pair = unknowns[..., components]
+    return pair.transpose(pair.ndim - 1, *range(pair.ndim - 1))[..., None]
+
+
 class BoxIterate:
     """Stages of the boxes in Newton's iteration: nothing but their unknowns, and the fields that follow."""
 
@@ -189,13 +226,13 @@ class BoxIterate:
         """(s, n, 6 + m)."""
         return self._boxes.residual(self._unknowns, self._fields)
 
-    def correct(self, correction: Array, instant: Instant) -> float:
+    def correct(self, correction: Array) -> float:
         """Add a ``correction`` (s, n, 6 + m); how far it moves the rod."""
         before = self._fields.position
         self._unknowns = self._unknowns + correction
         self._fields = self._boxes.fields(self._unknowns, self._motion)
         return float(np.abs(self._fields.position - before).max())
 
-    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+    def solution(self) -> tuple[Array, Fields]:
         """Unknowns and fields."""
         return self._unknowns, self._fields

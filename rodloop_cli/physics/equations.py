@@ -96,7 +96,11 @@ class Instant(NamedTuple):
 
 
 class Iterate(Protocol):
-    """All stages of a step, while Newton's iteration works on them."""
+    """All stages of a step, while Newton's iteration works on them.
+
+    An iteration is `residual`, then `correct`; after the last one comes `solution`, once. Both refer to the instant of
+    the last `residual`.
+    """
 
     def instant(self, stage: int, force: Array | None) -> Instant:
         """One of them, see `Instant.of_stage`."""
@@ -104,10 +108,10 @@ class Iterate(Protocol):
     def residual(self, instant: Instant) -> Array:
         """(s, …): by how much they miss the equations, with ``instant`` where these are linearised."""
 
-    def correct(self, correction: Array, instant: Instant) -> float:
+    def correct(self, correction: Array) -> float:
         """Add a ``correction`` (s, …); how far it moves the rod."""
 
-    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+    def solution(self) -> tuple[Array, Fields]:
         """The unknowns of the boxes (s, n, 6 + m) and the fields, after a last correction."""
 
 
@@ -115,9 +119,9 @@ NOTHING = np.zeros(0)
 
 
 class Balance(ABC):
-    """Eqs. (10)-(13) integrated along a mesh, from start values to the Gauss points and the right ends of the cells.
+    """What the two ways to integrate (10)-(13) along a mesh have in common: the film, the couple, and (13).
 
-    What is unknown, and what is left to solve, the kinds of equations below say.
+    What is unknown, where the integrals start, and what is left to solve, `boxes` and `whole_loop` say.
     """
 
     def __init__(self, mesh: Mesh, rule: GaussRule, load: Load) -> None:
@@ -130,30 +134,24 @@ class Balance(ABC):
         """(k, n, m): the angles at the Gauss points."""
 
     @abstractmethod
-    def _start(self, unknowns: Array, components: slice | int) -> Array:
-        """The values (components, k, cells, 1) from which the integrals start."""
+    def _start(self, unknowns: Array, component: int) -> Array:
+        """(k, cells, 1): the nodal values from which the integrals start."""
 
     @abstractmethod
     def _integral(self, values: Array) -> Array:
         """(..., n, m + 1): integrals of ``values`` (..., n, m) up to the Gauss points and the right ends."""
 
-    def fields(self, unknowns: Array, motion: Motion | None) -> Fields:
-        """Integrate (10)-(13) from ``unknowns`` of k instants; ``motion=None`` is statics."""
-        tangent, position = self.shape(unknowns)
-        velocity, acceleration = (NOTHING, NOTHING) if motion is None else kinematics(position, motion)
-        force = self._integral(self._force_density(tangent, velocity, acceleration))
-        force += self._start(unknowns, FORCE)
-        shear = force[0, ..., :-1] * tangent[1]
-        shear -= force[1, ..., :-1] * tangent[0]
-        if self.load.rotary_inertia and motion is not None:
-            shear += self.couple(self.angles(unknowns), motion)
-        moment, theta = self.turning(unknowns, shear)
-        return Fields(tangent, position, velocity, acceleration, force, moment, theta)
-
     def couple(self, angles: Array, motion: Motion) -> Array:
         """ρ ι θ_tt (k, n, m), which (13) adds to the shear."""
         couple: Array = self._density * self.load.rotary_inertia * _spin_rate(angles, motion)
         return couple
+
+    def couple_response(self, correction: Array, rates: Array) -> Array:
+        """(k, n, m): change of the `couple` by a ``correction`` (k, n, m) of the angles; ``rates`` as in `Motion`."""
+        flat = (len(rates), -1)
+        spin_rate = (rates @ (rates @ correction.reshape(flat))).reshape(correction.shape)
+        response: Array = self._density * self.load.rotary_inertia * spin_rate
+        return response
 
     def turning(self, unknowns: Array, shear: Array) -> tuple[Array, Array]:
         """Moment and angle (k, n, m + 1) by (13), from the shear Fx sin θ - Fy cos θ (k, n, m) and the couple."""
@@ -162,23 +160,6 @@ class Balance(ABC):
         theta = self._integral(moment[..., :-1] * self._compliance)
         theta += self._start(unknowns, THETA)
         return moment, theta
-
-    def shape(self, unknowns: Array) -> tuple[Array, Array]:
-        """Tangent (2, k, n, m) at the Gauss points; position (2, k, n, m + 1) there and at the right ends, by (10)."""
-        theta = self.angles(unknowns)
-        tangent = np.empty((2, *theta.shape))
-        np.cos(theta, out=tangent[0])
-        np.sin(theta, out=tangent[1])
-        position = self._integral(tangent)
-        position += self._start(unknowns, POSITION)
-        return tangent, position
-
-    def _force_density(self, tangent: Array, velocity: Array, acceleration: Array) -> Array:
-        """(2, k, n, m): F' by (11) and (12)."""
-        density = self.film(tangent, velocity[..., :-1])
-        if acceleration.size:
-            density += self._density * acceleration[..., :-1]
-        return density
 
     def film(self, tangent: Array, velocity: Array) -> Array:
         """Pressure and drag per length, of the shape of ``tangent`` (2, …); no drag where ``velocity`` is empty.

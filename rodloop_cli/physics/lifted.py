@@ -29,9 +29,6 @@ from rodloop_cli.physics.equations import (
 from rodloop_cli.physics.loop_integrals import LoopIntegrals
 from rodloop_cli.physics.rod import Array
 
-_STILL = np.zeros(1)
-"""The past of a change of the angles."""
-
 
 class LoopIterate:
     """The s stages of a step: the loop's unknowns, and forces of their own.
@@ -88,6 +85,7 @@ class LoopIterate:
         self._instant, cosine, sine = instant, instant.cosine.ravel(), instant.sine.ravel()
         self._frozen_tangent, self._frozen_normal = np.array([[[cosine], [sine]], [[sine], [-cosine]]])
         self._frozen_pressure = self._frozen_tangent * self._loop.load.p
+        self._frozen_force = instant.force.reshape(2, 1, -1)
 
     def residual(self, instant: Instant) -> Array:
         """(s, 6 + N): by how much the loop fails to close, then the integral of M/b the angle.
@@ -101,7 +99,9 @@ class LoopIterate:
         missing *= self._frozen_normal
         shear += missing
         np.add(shear[0], shear[1], out=self._shear)
-        self._add_couple(self._unknowns, self._motion)
+        if self._loop.load.rotary_inertia:
+            couple = self._loop.couple(self._loop.angles(self._unknowns), self._motion)
+            self._shear += couple.reshape(self._shear.shape)
         out: Array = self._arguments @ self._loop.to_residual
         np.subtract(self._position[..., -1].T, self._unknowns[:, POSITION], out=out[:, POSITION])
         np.subtract(force[..., -1].T, self._unknowns[:, FORCE], out=out[:, FORCE])
@@ -122,9 +122,8 @@ class LoopIterate:
         self._densities[..., -1] = self._unknowns[:, FORCE].T
         return _product(self._densities, loop.to_force)
 
-    def correct(self, correction: Array, instant: Instant) -> float:
+    def correct(self, correction: Array) -> float:
         """Add a ``correction`` (s, 6 + N), and to the forces their linear response; how far it moves the rod."""
-        self._freeze(instant)
         turned = np.empty_like(self._slopes)
         np.multiply(self._frozen_normal, -correction[:, NODAL:], out=turned[..., :-1])
         turned[..., -1] = correction[:, POSITION].T
@@ -138,7 +137,9 @@ class LoopIterate:
         return float(np.abs(self._position - before).max())
 
     def _force_response(self, correction: Array, moved: Array) -> Array:
-        """(2, s, P): change of the forces when the loop turns by ``correction`` and is ``moved`` (2, s, P)."""
+        """(2, s, P): change of the forces when the loop turns by ``correction`` and is ``moved`` (2, s, P); but for the
+        drag's change with the direction of the rod, which the next residual brings.
+        """
         points, load = self._points, self._loop.load
         inside = moved[..., :points]
         densities = np.empty_like(self._densities)
@@ -149,14 +150,10 @@ class LoopIterate:
         densities[..., -1] = correction[:, FORCE].T
         return _product(densities, self._loop.to_force)
 
-    def _add_couple(self, unknowns: Array, motion: Motion) -> None:
-        if self._loop.load.rotary_inertia:
-            self._shear += self._loop.couple(self._loop.angles(unknowns), motion).reshape(self._shear.shape)
-
-    def solution(self, instant: Instant) -> tuple[Array, Fields]:
+    def solution(self) -> tuple[Array, Fields]:
         """The unknowns of the boxes (s, n, 6 + m) and the fields, by cells."""
         loop, by_cells = self._loop, self._loop.by_cells
-        self._add_response_of_shear(instant)
+        self._add_response_of_shear()
         shape = (self._stages, loop.mesh.cells, -1)
         moment, theta = loop.turning(self._unknowns, self._shear.reshape(shape))
         position = self._position.take(by_cells, axis=-1)
@@ -165,14 +162,16 @@ class LoopIterate:
         fields = Fields(self._tangent.reshape(2, *shape), position, velocity, acceleration, force, moment, theta)
         return self._by_boxes(fields), fields
 
-    def _add_response_of_shear(self, instant: Instant) -> None:
+    def _add_response_of_shear(self) -> None:
         """Moments and angles, too, respond to the last correction linearly."""
         shear = self._response[..., : self._points] * self._frozen_normal
-        along = instant.force.reshape(2, 1, -1) * self._frozen_tangent
+        along = self._frozen_force * self._frozen_tangent
         shear += along * self._correction[:, NODAL:]
         self._shear += shear[0]
         self._shear += shear[1]
-        self._add_couple(self._correction, Motion(self._motion.rates, NOTHING, NOTHING, _STILL, _STILL))
+        if self._loop.load.rotary_inertia:
+            response = self._loop.couple_response(self._loop.angles(self._correction), self._motion.rates)
+            self._shear += response.reshape(self._shear.shape)
 
     def _by_boxes(self, fields: Fields) -> Array:
         out = np.empty((self._stages, self._loop.mesh.cells, NODAL + self._loop.rule.m))

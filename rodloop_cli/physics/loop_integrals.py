@@ -69,9 +69,8 @@ class LoopIntegrals(Balance):
         """(k, n, m)."""
         return unknowns[:, NODAL:].reshape(len(unknowns), self.mesh.cells, -1)
 
-    def _start(self, unknowns: Array, components: slice | int) -> Array:
-        start = unknowns[:, components].T
-        return start[..., None, None]
+    def _start(self, unknowns: Array, component: int) -> Array:
+        return unknowns[:, component, None, None]
 
     def _integral(self, values: Array) -> Array:
         *instants, cells, m = values.shape

@@ -7,7 +7,7 @@ points this is a small full matrix, which costs less than many small ones do.
 With T the matrix that integrates along the loop, and Δ the differences of angles, the linearised (11)-(13) need two
 products of known matrices with cos Δ and sin Δ alone, because d(r_i)·t_j turns into T_jk cos(θ_i - θ_k).
 
-Unknowns are stored as (k, 6 + N): x, y, θ, M, Fx, Fy at the first node, then the angles at all N = n m Gauss points.
+The order of the unknowns is that of `loop_integrals`.
 """
 
 import numpy as np

@@ -108,8 +108,7 @@ class Forced:
         return super().film(tangent, velocity) + as_pair(self._sources()[0]).reshape(tangent.shape)
 
     def couple(self, angles, motion):
-        is_change = motion.velocity_past.size == 0  # of fields, to which what does not depend on them adds nothing
-        return super().couple(angles, motion) + (0 if is_change else self._sources()[1])
+        return super().couple(angles, motion) + self._sources()[1]
 
     def _sources(self):
         if self._made_for is not Forced.times:

@@ -5,7 +5,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from rodloop_cli.numerics.radau import extrapolation, radau_iia
+from rodloop_cli.numerics.radau import radau_iia
 
 METHODS = pytest.mark.parametrize("stages", [1, 3, 5, 7])
 ROUND_OFF = 1e-12
@@ -111,11 +111,3 @@ def test_the_embedded_formula_is_of_order_s(stages):
         estimate = float(k == 1) + method.embedded @ method.nodes**k
         assert estimate == pytest.approx(0, abs=1e-9)
     assert abs(method.embedded @ method.nodes ** (stages + 1)) > 1e-4
-
-
-def test_extrapolation_continues_a_polynomial():
-    nodes = np.array([0.0, *radau_iia(3).nodes])
-    for ratio in (0.3, 1.0, 2.5):
-        matrix, times = extrapolation(nodes, ratio), 1 + ratio * nodes[1:]
-        for degree in range(4):
-            np.testing.assert_allclose(matrix @ nodes**degree, times**degree, rtol=1e-11)
