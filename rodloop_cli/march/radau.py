@@ -27,7 +27,7 @@ MOST_FULL = 64
 """Gauss points up to which one full matrix is faster than boxes."""
 
 STARTING_ACCURACY = 1e-8
-STARTING_LENGTHS = (1.0, 10.0)
+STARTING_LENGTHS = (1.0, 10.0, 100.0, 1000.0)
 
 ITERATION_ERROR = 0.003
 """Newton's share of the position error allowed in a step. Its error in velocities, and so in energies, is that in
