@@ -41,7 +41,7 @@ SHARE = 0.5
 class Refiner:
     """Decides on refinement; ``most_cells`` bounds the mesh, ``fixed`` leaves it alone.
 
-    horizon: the time in which a wrong velocity becomes a wrong position.
+    horizon: the time in which a wrong velocity becomes a wrong position; 0 where no junction of stiffness sends waves.
     """
 
     most_cells: int = 4096

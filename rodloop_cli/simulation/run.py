@@ -169,7 +169,8 @@ def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:
     first *= fastest_time(begun.load, begun.rod)
     longest = case.dt or case.t_end
     plan = Plan(case.t_end, case.tol, stages_for(case.tol), longest, min(first, longest))
-    refiner = Refiner(fixed=case.N is not None, horizon=growth_time(begun.load, begun.rod))
+    horizon = growth_time(begun.load, begun.rod) if begun.rod.has_stiffness_contrast else 0.0
+    refiner = Refiner(fixed=case.N is not None, horizon=horizon)
     return Marcher(begun.state, plan, refiner, begun.departure, work)
 
 
