@@ -16,8 +16,8 @@ from rodloop_cli.physics.rod import Rod, Segment
 SUSPICIOUS = 5e4
 """Excess of amplification from which shapes may be off by many tol.
 
-Of 247 random cases that ended, 9 exceed it; the four of them that are off by more than 5 tol (10 … 2000) are among
-these. The homogeneous loop at p = 3.8 has 7e3 at t = 9.6, when it is round again."""
+Of 243 random cases 9 exceed it, among them four of the five that are off by more than 5 tol; see docs/stability.md.
+The homogeneous loop at p = 3.8 has 7e3 at t = 9.6, when it is round again."""
 
 
 class Amplification:
