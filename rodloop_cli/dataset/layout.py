@@ -10,6 +10,9 @@ import numpy.typing as npt
 
 from rodloop_cli.dataset.variables import IN_A_ROW, SEGMENT, TABLE, Attribute, Variable
 
+KEPT_BYTES = 2**20
+"""Of each variable, in memory while the file is written."""
+
 BLOCK_ROWS = 50
 """Rows of a chunk and of a write: about 64, and a divisor of the default number of snapshots, so that
 nothing is padded. Measured on 200 x 200 points: 3.0 MB in 25 ms, against 1.3 MB in 65 ms with zlib level 1
@@ -45,6 +48,8 @@ def _create_variable(dataset: netCDF4.Dataset, variable: Variable, points: int) 
     # Neither way of creating it gives a variable the attribute _FillValue, which CF forbids on coordinates.
     fill = None if variable.name == "t" else False
     created = dataset.createVariable(variable.name, variable.dtype, variable.dims, chunksizes=chunks, fill_value=fill)
+    # Blocks are written once, in order: the 16 MB that HDF5 would keep of every variable are of no use.
+    created.set_var_chunk_cache(size=KEPT_BYTES)
     created.setncatts(variable.attributes)
 
 
