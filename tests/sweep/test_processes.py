@@ -10,6 +10,7 @@ import threading
 import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -23,9 +24,22 @@ from rodloop_cli.sweep.slots import ProcessSlots, WorkerDied
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
 
-def start(path, folder, *more):
-    command = [sys.executable, "-m", "rodloop_cli", "sweep", str(path), "-o", str(folder), *more]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+@pytest.fixture
+def start():
+    """Starts ``rodloop sweep``, each in a session of its own; none outlives the test."""
+    started = []
+
+    def sweep(path, folder, *more):
+        command = [sys.executable, "-m", "rodloop_cli", "sweep", str(path), "-o", str(folder), *more]
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        started.append(subprocess.Popen(command, start_new_session=True, **pipes))
+        return started[-1]
+
+    yield sweep
+    for process in started:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
 
 
 def rows(folder):
@@ -43,11 +57,15 @@ def until(condition, seconds=30.0):
         time.sleep(0.005)
 
 
-def workers_of(pid):
-    """Processes that a process started and that work: not the resource tracker of multiprocessing."""
-    command = ["ps", "-ww", "-o", "pid=", "-o", "args=", "--ppid", str(pid)]
-    listed = subprocess.run(command, capture_output=True, text=True, check=False)
-    return [int(line.split()[0]) for line in listed.stdout.splitlines() if "spawn_main" in line]
+def workers_of(sweep, count=2):
+    """Waits for the processes that a sweep starts and that work: not the resource tracker of multiprocessing."""
+    command = ["ps", "-ww", "-o", "pid=", "-o", "args=", "--ppid", str(sweep.pid)]
+    workers = []
+    while len(workers) < count:
+        assert sweep.poll() is None, "the sweep ended"
+        listed = subprocess.run(command, capture_output=True, text=True, check=False)
+        workers = [int(line.split()[0]) for line in listed.stdout.splitlines() if "spawn_main" in line]
+    return workers
 
 
 def statuses(folder):
@@ -56,15 +74,14 @@ def statuses(folder):
 
 
 @pytest.mark.parametrize("output", ["fields", "scalars"])
-def test_a_sweep_killed_at_random_ends_complete_with_nothing_run_twice(sweep_file, tmp_path, output):
+def test_a_sweep_killed_at_random_ends_complete_with_nothing_run_twice(start, sweep_file, tmp_path, output):
     folder, dice = tmp_path / "out", random.Random(output)
     path = sweep_file("p: {linspace: [1, 48, 96]}", more=f"output: {output}")
     for wanted in (dice.randint(10 * kill, 10 * kill + 6) for kill in (1, 2, 3)):
         sweep = start(path, folder)
+        workers = workers_of(sweep)
         until(lambda least=wanted: len(rows(folder)) >= least)
         time.sleep(dice.random() * 0.02)
-        workers = workers_of(sweep.pid)
-        assert workers
         sweep.kill()
         sweep.communicate()
         until(lambda pids=workers: not any(is_alive(pid) for pid in pids))
@@ -84,11 +101,12 @@ def is_alive(pid):
         return False
 
 
-def test_a_killed_worker_costs_one_member(sweep_file, tmp_path):
+def test_a_killed_worker_costs_one_member(start, sweep_file, tmp_path):
     folder, path = tmp_path / "out", sweep_file("p: {linspace: [1, 30, 30]}", more="output: scalars")
     sweep = start(path, folder, "-j", "2")
+    workers = workers_of(sweep)
     until(lambda: len(rows(folder)) >= 4)
-    os.kill(workers_of(sweep.pid)[0], signal.SIGKILL)
+    os.kill(workers[0], signal.SIGKILL)
     shown, told = sweep.communicate(timeout=60)
     assert (sweep.returncode, shown) == (4, f"{folder}/sweep.nc\n")
     assert "the worker process died (SIGKILL, perhaps out of memory)" in told
@@ -98,7 +116,7 @@ def test_a_killed_worker_costs_one_member(sweep_file, tmp_path):
     assert (again.returncode, statuses(folder)) == (0, {Status.reached_end: 30})
 
 
-def test_ctrl_c_stops_at_once_and_keeps_what_is_done(sweep_file, tmp_path):
+def test_ctrl_c_stops_at_once_and_keeps_what_is_done(start, sweep_file, tmp_path):
     folder, path = tmp_path / "out", sweep_file("p: {linspace: [1, 200, 200]}", more="output: scalars")
     sweep = start(path, folder)
     until(lambda: len(rows(folder)) >= 3)
@@ -111,7 +129,7 @@ def test_ctrl_c_stops_at_once_and_keeps_what_is_done(sweep_file, tmp_path):
     assert statuses(folder) == {Status.reached_end: done, Status.not_run: 200 - done}
 
 
-def test_two_sweeps_in_one_folder_share_the_work(sweep_file, tmp_path):
+def test_two_sweeps_in_one_folder_share_the_work(start, sweep_file, tmp_path):
     folder, path = tmp_path / "out", sweep_file("p: {linspace: [1, 30, 30]}")
     sweeps = [start(path, folder, "--json", "-j", "1") for _ in range(2)]
     ran = [json.loads(sweep.communicate(timeout=60)[0])["ran"] for sweep in sweeps]
