@@ -36,16 +36,12 @@ class Shapes:
     @cached_property
     def tangent(self) -> Array:
         """(2, k, n, m) at the Gauss points alone; does not need the positions."""
-        angles = self._moved[..., NODAL:]
-        tangent = np.empty((2, *angles.shape))
-        np.cos(angles, out=tangent[0])
-        np.sin(angles, out=tangent[1])
-        return tangent
+        return self._step.start.equations.tangent(self._moved)
 
     @cached_property
     def position(self) -> Array:
         """(2, k, n, m + 1)."""
-        return self._step.start.equations.shape(self._moved)[1]
+        return self._step.start.equations.position(self._moved, self.tangent)
 
     @cached_property
     def theta(self) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from rodloop_cli.errors import ConvergenceError
 from rodloop_cli.march.predictor import Past
 from rodloop_cli.march.radau import ITERATION_ERROR, RadauStepper
-from rodloop_cli.march.refine import Finer, Refiner
+from rodloop_cli.march.refine import ROUND_OFF, Finer, Refiner
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.control import CUT_AFTER_FAILURE, Controller, settle_on
@@ -16,9 +16,6 @@ from rodloop_cli.numerics.gauss import Array
 
 SMALLEST_STEP = 1e-13
 """Of t_end: below this the time hardly advances in double precision."""
-
-ROUND_OFF = 1e-12
-"""The smallest position error that a step can be asked for."""
 
 MANY_ITERATIONS = 6
 CUT_AFTER_MANY = 0.85

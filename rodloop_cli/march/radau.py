@@ -28,6 +28,7 @@ MOST_FULL = 64
 
 STARTING_ACCURACY = 1e-8
 STARTING_LENGTHS = (1.0, 10.0, 100.0, 1000.0)
+"""Tried in turn, in units of the negligible length asked for: the last is a tenth of the fastest time of the motion."""
 
 ITERATION_ERROR = 0.003
 """Newton's share of the position error allowed in a step. Its error in velocities, and so in energies, is that in

@@ -31,7 +31,7 @@ load sends out from the junctions show in velocities long before they do in posi
 loops of stiffness contrast up to 10: 0.1 to 0.5 in such runs, 3 to 16 tol wrong; with 0.06 none is left."""
 
 ROUND_OFF = 1e-12
-"""Of positions: a velocity is not known better than that over the step."""
+"""Of positions: no step can be asked for less, and no velocity is known better than that over the step."""
 
 SHARE = 0.5
 """Of the tolerance, for the error of space."""

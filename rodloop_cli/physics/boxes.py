@@ -72,13 +72,22 @@ class BoxEquations(Balance):
 
     def shape(self, unknowns: Array) -> tuple[Array, Array]:
         """Tangent (2, k, n, m) at the Gauss points; position (2, k, n, m + 1) there and at the right ends, by (10)."""
+        tangent = self.tangent(unknowns)
+        return tangent, self.position(unknowns, tangent)
+
+    def tangent(self, unknowns: Array) -> Array:
+        """(2, k, n, m) at the Gauss points."""
         theta = self.angles(unknowns)
         tangent = np.empty((2, *theta.shape))
         np.cos(theta, out=tangent[0])
         np.sin(theta, out=tangent[1])
+        return tangent
+
+    def position(self, unknowns: Array, tangent: Array) -> Array:
+        """(2, k, n, m + 1) at the Gauss points and the right ends, by (10) from their tangents."""
         position = self._integral(tangent)
         position += _pair(unknowns, POSITION)
-        return tangent, position
+        return position
 
     def _force_density(self, tangent: Array, velocity: Array, acceleration: Array) -> Array:
         """(2, k, n, m): F' by (11) and (12)."""

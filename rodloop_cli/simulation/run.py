@@ -23,7 +23,7 @@ from rodloop_cli.physics.lobes import find_lobes
 from rodloop_cli.simulation.amplification import Amplification
 from rodloop_cli.simulation.events import CrossingWatch, RestWatch
 from rodloop_cli.simulation.record import Recorder, Row
-from rodloop_cli.simulation.start import Start, fastest_time, growth_time, start, waves_of
+from rodloop_cli.simulation.start import Start, fastest_time, growth_time, start
 from rodloop_cli.simulation.summary import Summary
 
 Progress = Callable[[float], None]
@@ -88,8 +88,8 @@ class Run:
     @property
     def warning(self) -> str:
         """What makes this run less accurate than others, as far as that is known beforehand; empty if nothing."""
-        disturbed = any(wave.amplitude for wave in waves_of(self.case))
-        return JUMPING_MOMENT[self.case.scheme] if disturbed and self.begun.rod.has_stiffness_contrast else ""
+        kinked = self.begun.waves and self.begun.rod.has_stiffness_contrast
+        return JUMPING_MOMENT[self.case.scheme] if kinked else ""
 
     def into(self, sink: RowSink, progress: Progress | None = None, between: BetweenSteps | None = None) -> Summary:
         """Run to the end, or to the event that stops it, and close the sink with the outcome.
@@ -177,7 +177,7 @@ def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:
 def stages_for(tol: float) -> int:
     """Stages of the Radau method: the more the tighter the tolerance.
 
-    Measured: five need no more time than three from tol = 1e-2 on, seven no more than five from 3e-4 on; nine gain
-    nothing.
+    Measured where the error limits the steps: five need no more time than three from tol = 1e-2 on, seven no more than
+    five from 3e-4 on; nine gain nothing. Where Newton limits them, see `march.loop.STAGES_WHEN_HARD`.
     """
     return 5 if tol > 3e-4 else 7

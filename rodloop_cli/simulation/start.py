@@ -53,10 +53,13 @@ ROUND_OFF = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """The loop just after the load is switched on; ``step`` is the negligible one that gave its forces."""
+    """The loop just after the load is switched on; ``step`` is the negligible one that gave its forces, ``waves`` are
+    those of the perturbation.
+    """
 
     rod: Rod
     load: Load
+    waves: tuple[Wave, ...]
     state: State
     step: Step
     departure: Departure
@@ -75,7 +78,7 @@ def start(case: Case) -> Start:
     amplitude = float(np.abs(displacement(waves, np.linspace(0, 2 * np.pi, 1024))).max())
     push = float(np.abs(state.acceleration).max()) * growth_time(load, rod) ** 2
     scale = max(amplitude or LEAST_SCALE, push)
-    return Start(rod, load, state, step, Departure(min(1.0, scale)))
+    return Start(rod, load, waves, state, step, Departure(min(1.0, scale)))
 
 
 def rod_of(case: Case) -> Rod:
@@ -89,14 +92,14 @@ def load_of(case: Case) -> Load:
 
 
 def waves_of(case: Case) -> tuple[Wave, ...]:
-    """The perturbation of a case, its random parts drawn."""
+    """The perturbation of a case, its random parts drawn; waves of no height are none."""
     waves: list[Wave] = []
     for item in case.perturbation:
         if isinstance(item, ModePerturbation):
             waves.append(Wave(item.mode, item.amplitude, item.phase))
         elif item.random.amplitude > 0:
             waves.extend(random_waves(item.random.amplitude, item.random.modes, item.random.seed))
-    return tuple(waves)
+    return tuple(wave for wave in waves if wave.amplitude)
 
 
 def points_per_cell(case: Case, rod: Rod, load: Load, waves: tuple[Wave, ...]) -> int:
@@ -140,7 +143,7 @@ def _resolved(case: Case, rod: Rod, load: Load, rule: GaussRule, waves: tuple[Wa
         mesh = Mesh.on(rod, cells_by_length(rod, case.N))
         return mesh, shape_on(mesh)
     assert case.tol is not None
-    moving = [abs(w.amplitude) for w in waves if w.amplitude]
+    moving = [abs(w.amplitude) for w in waves]
     allowed = max(ROUND_OFF, SHARE * case.tol * min(1.0, max(moving, default=1.0)))
     mesh = Mesh.on(rod, tuple(_first_cells(s, load, len(rod.segments), rule.m) for s in rod.segments))
     while True:

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from rodloop_cli import Case
+from rodloop_cli import Case, simulate
 from rodloop_cli.march.refine import Finer, unresolved
 from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.energies import Quadrature
@@ -98,3 +98,11 @@ def test_a_bisected_mesh_keeps_materials_and_junctions():
     assert rod.ends[0] in fine.edges
     np.testing.assert_allclose(fine.lengths[1], mesh.lengths[1] / 2)
     assert set(mesh.edges) <= set(fine.edges)
+
+
+def test_cells_too_long_for_the_first_waves_are_halved_in_time():
+    """The velocities of the waves that leave the junctions were not resolved: 16 tol, and nothing to see at first."""
+    case = {"p": 56.8, "stiffness_ratio": 0.334, "density_ratio": 0.143, "k": 0.768, "zeta_perp": 1.88, "t_end": 0.04}
+    run, reference = (simulate(Case(**case, snapshots=9, output_points=64, tol=tol)) for tol in (1e-6, 1e-7))
+    apart = np.hypot(run.x - reference.x, run.y - reference.y)
+    assert float(apart.max()) < 2e-6
