@@ -33,11 +33,11 @@ def pack(marcher: Marcher | FixedMarcher) -> Arrays:
         arrays["march"] = np.array([marcher.size])
         if marcher.before is not None:
             arrays |= _pack_state("before", marcher.before)
-        return arrays
+        return arrays | _pack_linearisation(marcher)
     control = marcher.controller
     stages = marcher.stepper.method.stages
     arrays["march"] = np.array([marcher.proposal, control.last_size, control.last_error, stages])
-    return arrays | {"base": marcher.base} | _pack_stepper(marcher.stepper)
+    return arrays | {"base": marcher.base} | _pack_linearisation(marcher.stepper)
 
 
 def unpack(marcher: Marcher | FixedMarcher, arrays: Arrays) -> None:
@@ -51,12 +51,13 @@ def unpack(marcher: Marcher | FixedMarcher, arrays: Arrays) -> None:
         marcher.size = float(arrays["march"][0])
         if "before.time" in arrays:
             marcher.before = _unpack_state("before", arrays, equations)
+        _unpack_linearisation(marcher, arrays, equations)
         return
     marcher.proposal, last_size, last_error, stages = map(float, arrays["march"])
     marcher.use_stages(int(stages))
     marcher.controller = Controller(marcher.controller.exponent, last_size, last_error)
     marcher.base = arrays["base"]
-    _unpack_stepper(marcher.stepper, arrays, equations)
+    _unpack_linearisation(marcher.stepper, arrays, equations)
 
 
 def _pack_state(name: str, state: State) -> Arrays:
@@ -83,17 +84,17 @@ def _unpack_mesh(arrays: Arrays) -> Mesh:
     return Mesh(arrays["mesh.edges"], segment, arrays["mesh.stiffness"], arrays["mesh.density"])
 
 
-def _pack_stepper(stepper: RadauStepper) -> Arrays:
-    kept = stepper.linearisation
+def _pack_linearisation(newton: RadauStepper | FixedMarcher) -> Arrays:
+    kept = newton.linearisation
     if kept is None:
         return {}
     instant = {f"instant.{name}": value for name, value in kept.instant._asdict().items()}
-    return instant | {"stepper": np.array([kept.step, stepper.contraction])}
+    return instant | {"newton": np.array([kept.step, newton.contraction])}
 
 
-def _unpack_stepper(stepper: RadauStepper, arrays: Arrays, equations: BoxEquations) -> None:
-    if "stepper" not in arrays:
+def _unpack_linearisation(newton: RadauStepper | FixedMarcher, arrays: Arrays, equations: BoxEquations) -> None:
+    if "newton" not in arrays:
         return
-    size, stepper.contraction = map(float, arrays["stepper"])
+    length, newton.contraction = map(float, arrays["newton"])
     instant = Instant(*(arrays[f"instant.{name}"] for name in Instant._fields))
-    stepper.linearisation = stepper.linearised(equations, size, instant)
+    newton.linearisation = newton.linearised(equations, length, instant)

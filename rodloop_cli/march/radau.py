@@ -11,7 +11,7 @@ import numpy as np
 
 from rodloop_cli.errors import SingularSystem
 from rodloop_cli.march.predictor import Past, predict
-from rodloop_cli.march.stages import Equations, Linearisation, StageModes, solve_stages
+from rodloop_cli.march.stages import REUSE_BELOW, Equations, Linearisation, StageModes, solve_stages
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.gauss import Array
@@ -19,9 +19,6 @@ from rodloop_cli.numerics.radau import RadauIIA, radau_iia
 from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.equations import NODAL, Fields, Instant, Iterate, Motion
 from rodloop_cli.physics.whole_loop import LoopEquations
-
-REUSE_BELOW = 0.05
-"""A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
 
 MOST_FULL = 64
 """Gauss points up to which one full matrix is faster than boxes."""

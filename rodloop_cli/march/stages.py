@@ -10,16 +10,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rodloop_cli.march.predictor import Guess
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.boxes import BoxEquations
-from rodloop_cli.physics.equations import Fields, Instant, Iterate, Motion
+from rodloop_cli.physics.equations import AnyArray, Fields, Instant, Iterate, Motion
 from rodloop_cli.physics.whole_loop import LoopEquations
 
-Complex = NDArray[np.complex128]
 Equations = BoxEquations | LoopEquations
+
+REUSE_BELOW = 0.05
+"""A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
 
 SLOW = 0.3
 """Contraction above which the linearisation is renewed in the middle of an iteration."""
@@ -46,11 +47,14 @@ CERTAIN = 0.05
 
 @dataclass(frozen=True, eq=False)
 class StageModes:
-    """Eigen-decomposition of the matrix of rates (before division by the step): see `RadauIIA` for the shapes."""
+    """Eigen-decomposition of the matrix of rates (before division by the step): see `RadauIIA` for the shapes.
 
-    eigenvalues: Complex
-    to_modes: Complex
-    from_modes: Complex
+    All real where there is but one stage: half the work.
+    """
+
+    eigenvalues: AnyArray
+    to_modes: AnyArray
+    from_modes: AnyArray
 
 
 class Solution(NamedTuple):
@@ -70,13 +74,14 @@ class Linearisation:
 
     def __init__(self, equations: Equations, modes: StageModes, step: float, instant: Instant) -> None:
         self.equations, self.step, self.instant, self._modes = equations, step, instant, modes
-        self.systems = equations.factored(modes.eigenvalues / step, *instant)
+        rates: AnyArray = modes.eigenvalues / step
+        self.systems = equations.factored(rates, *instant)
 
     def correction(self, residual: Array) -> Array:
         """Newton's correction of the stages, in the shape of their ``residual`` (s, ...)."""
         stages = len(residual)
-        coordinates = self._modes.to_modes @ residual.reshape(stages, -1)
-        solved = self.systems.solve(coordinates.reshape(-1, *residual.shape[1:]))
+        coordinates: AnyArray = self._modes.to_modes @ residual.reshape(stages, -1)
+        solved: AnyArray = self.systems.solve(coordinates.reshape(-1, *residual.shape[1:]))
         correction = (self._modes.from_modes @ solved.reshape(len(solved), -1)).real
         return correction.reshape(residual.shape)
 

@@ -24,8 +24,8 @@ from rodloop_cli.physics.equations import (
     NOTHING,
     POSITION,
     THETA,
+    AnyArray,
     Balance,
-    Complex,
     Fields,
     Instant,
     Load,
@@ -186,9 +186,9 @@ class BoxEquations(Balance):
         density[0, 0][:, *angles] += excess * (square * v - cross * u)
         density[0, 1][:, *angles] += excess * (square * u + cross * v)
 
-    def factored(self, rates: Complex, cosine: Array, sine: Array, force: Array, velocity: Array) -> CondensedSystems:
-        """The factored systems for time derivatives λ in ``rates`` (E,), the first of which is real; the other
-        arguments are those of `linearise`. Raises SingularSystem.
+    def factored(self, rates: AnyArray, cosine: Array, sine: Array, force: Array, velocity: Array) -> CondensedSystems:
+        """The factored systems for time derivatives λ in ``rates`` (E,), the first of which is real (all, where they
+        are of a real type); the other arguments are those of `linearise`. Raises SingularSystem.
         """
         parts = self.linearise(cosine, sine, force, velocity)
         rate = rates[:, None, None, None]

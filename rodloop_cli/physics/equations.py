@@ -12,7 +12,7 @@ does it cell by cell, `whole_loop` round the loop.
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, Self
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rodloop_cli.numerics.gauss import GaussRule
 from rodloop_cli.physics.rod import Array, Mesh
 
-Complex = NDArray[np.complex128]
+AnyArray = NDArray[Any]
 
 X, Y, THETA, MOMENT, FX, FY = range(6)
 NODAL = 6

@@ -24,7 +24,7 @@ from rodloop_cli.march.memory import pack, unpack
 if TYPE_CHECKING:
     from rodloop_cli.simulation.run import Run
 
-FORMAT = 2
+FORMAT = 3
 """Of the arrays in a checkpoint: raised when they change, so that an older one is not taken for one of today."""
 
 SECONDS_BETWEEN = 5.0

@@ -27,6 +27,7 @@ PEERS = {
     "ida": ("PEER",),
     "solve_dae_radau": ("PEER",),
     "polygon": ("PEER",),
+    "paper_sparse": ("PLAIN", "KEPT"),
     "pyelastica_ring": ("PEER",),
 }
 CASES = ("H", "S", "P64", "D")
