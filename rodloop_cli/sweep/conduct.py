@@ -11,7 +11,7 @@ from pathlib import Path
 
 from rodloop_cli.sweep.executors import Crew
 from rodloop_cli.sweep.manifest import Manifest
-from rodloop_cli.sweep.task import Ending, Report, Task, failure, run_member
+from rodloop_cli.sweep.task import Ending, Report, Task, failure
 
 PATIENCE = 0.5
 """Seconds between two looks at members that another sweep is running."""
@@ -66,6 +66,13 @@ class Conductor:
                 self._busy.append(task)
             else:
                 self.watcher(task, report)
+
+
+def run_member(task: Task) -> Report:
+    """What a worker does: see `rodloop_cli.sweep.worker.run`."""
+    from rodloop_cli.sweep.worker import run  # noqa: PLC0415  half a second, in the worker alone
+
+    return run(task)
 
 
 def _report(task: Task, future: Future[Report]) -> Report:

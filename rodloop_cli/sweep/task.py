@@ -43,13 +43,6 @@ class Report:
     outcome: str = ""
 
 
-def run_member(task: Task) -> Report:
-    """What a worker does: see `rodloop_cli.sweep.worker.run`."""
-    from rodloop_cli.sweep.worker import run  # noqa: PLC0415  half a second, in the worker alone
-
-    return run(task)
-
-
 def failure(name: str, key: str, outcome: str) -> Row:
     """The row of a member that has no result."""
     return {"key": key, "member": name, "status": int(Status.failed), "outcome": outcome}

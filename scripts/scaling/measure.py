@@ -24,13 +24,14 @@ from pathlib import Path
 from rodloop_cli.case import Case
 from rodloop_cli.simulation import Run
 from rodloop_cli.sweep.columns import Status
+from rodloop_cli.sweep.conduct import run_member
 from rodloop_cli.sweep.file import read_sweep
 from rodloop_cli.sweep.gather import gather
 from rodloop_cli.sweep.ledger import Ledger
 from rodloop_cli.sweep.manifest import MANIFEST, Manifest
 from rodloop_cli.sweep.observe import Nowhere
 from rodloop_cli.sweep.plan import planned
-from rodloop_cli.sweep.task import Task, run_member
+from rodloop_cli.sweep.task import Task
 
 REPEATS = 3
 PHASE_DIAGRAM = Path(__file__).parents[2] / "configs" / "sweeps" / "phase_diagram.yaml"

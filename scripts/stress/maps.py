@@ -54,6 +54,12 @@ MAPS = {
         BASE | {"stiffness_ratio": 5.0},
     ),
     "drag": Map("radau, tol = 1e-4", Axis("zeta_perp", (0.0, *_powers(-1, 4))), LOAD, BASE),
+    "gamma": Map(
+        "radau, drag 10",
+        Axis("gamma", (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)),
+        LOAD,
+        BASE | {"zeta_perp": 10.0},
+    ),
     "amplitude": Map("radau, tol = 1e-4", Axis("amplitude", (*_powers(-8, -1), 0.2)), LOAD, BASE),
     "tolerance": Map("radau", Axis("tol", _powers(-7, -2)), LOAD, BASE),
     "steps": Map("bdf2, ten steps", Axis("dt", _powers(-6, 0)), Axis("N", (8, 30, 100, 300, 1000, 3000, 10000)), FIXED),
