@@ -76,7 +76,8 @@ def start(case: Case) -> Start:
     state = State.at_rest(BoxEquations(mesh, rule, load), unknowns)
     state, step = started(state, STARTING_TIME * fastest_time(load, rod))
     amplitude = float(np.abs(displacement(waves, np.linspace(0, 2 * np.pi, 1024))).max())
-    push = float(np.abs(state.acceleration).max()) * growth_time(load, rod) ** 2
+    # Forces, not accelerations: what is lighter is faster, but gets no further before it swings back.
+    push = float(np.abs(mesh.density[:, None] * state.acceleration).max()) * _unit_time(load) ** 2
     scale = max(amplitude or LEAST_SCALE, push)
     return Start(rod, load, waves, state, step, Departure(min(1.0, scale)))
 
@@ -125,15 +126,19 @@ def _sends_short_waves(rod: Rod, load: Load, waves: tuple[Wave, ...]) -> bool:
 
 def growth_time(load: Load, rod: Rod) -> float:
     """Time scale of the motion of the whole loop under this load."""
-    heaviest = max(s.density for s in rod.segments)
-    return float(sqrt(heaviest) / (1 + abs(load.p)) ** 0.75)
+    return sqrt(max(s.density for s in rod.segments)) * _unit_time(load)
 
 
 def fastest_time(load: Load, rod: Rod) -> float:
     """Time scale of the fastest motion that the load starts."""
     lightest = min(1.0, *(s.density for s in rod.segments)) if len(rod.segments) > 1 else 1.0
     stiffest = max(s.stiffness for s in rod.segments)
-    return float(sqrt(lightest / stiffest) / (1 + abs(load.p)) ** 0.75)
+    return sqrt(lightest / stiffest) * _unit_time(load)
+
+
+def _unit_time(load: Load) -> float:
+    """Time scale of the motion of a rod of unit stiffness and density."""
+    return float((1 + abs(load.p)) ** -0.75)
 
 
 def _resolved(case: Case, rod: Rod, load: Load, rule: GaussRule, waves: tuple[Wave, ...]) -> tuple[Mesh, np.ndarray]:

@@ -26,6 +26,7 @@ PLAIN = "paper's scheme, sparse LU in every iteration"
 ALONE = "– its set-up and steps alone, as timed for the peers"
 DOCUMENT = Path("docs/performance.md")
 FIGURE = Path("docs/figures/work_precision.png")
+COLOURS = [*(f"C{i}" for i in range(10)), "black", "gold"]
 BEGIN, END = "<!-- begin table -->", "<!-- end table -->"
 
 
@@ -86,7 +87,10 @@ def _seconds(value: float | None) -> str:
 
 def _ratio(others: list[Row], ours: list[Row], target: float) -> str:
     theirs, mine = fastest(others, target), fastest(ours, target)
-    return "–" if theirs is None or mine is None else f"{theirs / mine:.2g}"
+    if theirs is None or mine is None:
+        return "–"
+    ratio = theirs / mine
+    return f"{ratio:.2g}" if ratio < 100 else f"{round(ratio, -1):.0f}"
 
 
 def draw(rows: list[Row]) -> Figure:
@@ -97,7 +101,7 @@ def draw(rows: list[Row]) -> Figure:
     for ax, (case, words) in zip(axes, CASES.items(), strict=True):
         for peer, measured in by_peer(rows, case).items():
             front = pareto(measured)
-            color = styles.setdefault(peer, f"C{len(styles)}")
+            color = styles.setdefault(peer, COLOURS[len(styles) % len(COLOURS)])
             width = 2.6 if peer == OURS else 1.2
             walls, errors = [row["wall"] for row in front], [row["error"] for row in front]
             ax.loglog(walls, errors, "o-", ms=4, lw=width, color=color, label=peer)

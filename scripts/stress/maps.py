@@ -98,7 +98,7 @@ def draw_map(chosen: Map, trials: list[list[Trial]], path: Path) -> None:
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
     panels: dict[str, Callable[[Trial], float]] = {
         "log10 energy residual / exchanged": lambda t: float(np.log10(max(t.residual, 1e-12))),
-        "log10 error / (tol x departure)": lambda t: float(np.log10(max(t.relative_error, 1e-3))),
+        "log10 error / tol": lambda t: float(np.log10(max(t.error, 1e-4))),
         "failed or rejected steps / steps": lambda t: t.retries / max(1, t.work.get("steps", 0)),
     }
     for ax, (label, value) in zip(axes, panels.items(), strict=True):
