@@ -1,8 +1,8 @@
 """The motion between the ends of a step.
 
 Positions and angles integrate the polynomial through the rates at the start and the stages, one degree above the
-stages' own; velocities are that polynomial; forces and moments interpolate the stages alone, the constraint's forces
-at the start being of lower order.
+stages' own; velocities are that polynomial; forces and moments interpolate the stages, and the start only where it is
+as good: in Radau IIA the constraint's forces there are of lower order.
 """
 
 from functools import cache, cached_property
@@ -62,12 +62,18 @@ class Shapes:
     @cached_property
     def force(self) -> Array:
         """(2, k, n, m + 1)."""
-        return _weighted(self._weights.stages, self._step.fields.force)
+        step = self._step
+        if step.moment_at_start is None:
+            return _weighted(self._weights.stages, step.fields.force)
+        return _combined(self._weights.values, step.start.force, step.fields.force)
 
     @cached_property
     def moment(self) -> Array:
         """(k, n, m + 1)."""
-        return _weighted(self._weights.stages, self._step.fields.moment)
+        step = self._step
+        if step.moment_at_start is None:
+            return _weighted(self._weights.stages, step.fields.moment)
+        return _combined(self._weights.values, step.moment_at_start, step.fields.moment)
 
     @cached_property
     def spin(self) -> Array:

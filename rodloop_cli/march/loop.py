@@ -11,7 +11,7 @@ from rodloop_cli.march.radau import ITERATION_ERROR, RadauStepper
 from rodloop_cli.march.refine import ROUND_OFF, Finer, Refiner
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
-from rodloop_cli.numerics.control import CUT_AFTER_FAILURE, Controller, settle_on
+from rodloop_cli.numerics.control import CUT_AFTER_FAILURE, Controller, settle_on, without_sliver
 from rodloop_cli.numerics.gauss import Array
 
 SMALLEST_STEP = 1e-13
@@ -156,15 +156,9 @@ class Marcher:
         return min(proposal, CUT_AFTER_MANY * step.size) if step.newton_iterations >= MANY_ITERATIONS else proposal
 
     def _size(self) -> float:
-        """The next step to try.
-
-        One that nearly reaches the end is stretched to it, and one that would leave less than itself goes half way: a
-        sliver of a last step would multiply round-off by Δt⁻² in its forces.
-        """
-        remaining = self.plan.t_end - self.state.time
-        size = settle_on(min(self.proposal, self.plan.longest), self.stepper.reusable_size)
-        if size > remaining / 2:
-            size = remaining if size > 0.999 * remaining else remaining / 2
+        """The next step to try."""
+        size = settle_on(min(self.proposal, self.plan.longest), self.stepper.newton.reusable_length)
+        size = without_sliver(size, self.plan.t_end - self.state.time)
         if size < SMALLEST_STEP * self.plan.t_end:
             raise ConvergenceError(_gave_up(self.state.time, size))
         return size

@@ -8,8 +8,9 @@ import numpy as np
 
 from rodloop_cli.march.bdf2 import FixedMarcher
 from rodloop_cli.march.loop import Marcher
+from rodloop_cli.march.newton import Newton
 from rodloop_cli.march.predictor import Past
-from rodloop_cli.march.radau import RadauStepper
+from rodloop_cli.march.stages import Equations
 from rodloop_cli.march.state import State
 from rodloop_cli.numerics.control import Controller
 from rodloop_cli.numerics.gauss import Array
@@ -30,14 +31,14 @@ def pack(marcher: Marcher | FixedMarcher) -> Arrays:
         arrays |= {f"last.{name}": getattr(marcher.last, name) for name in PAST}
         arrays["last.size"] = np.array([marcher.last.size])
     if isinstance(marcher, FixedMarcher):
-        arrays["march"] = np.array([marcher.size])
-        if marcher.before is not None:
-            arrays |= _pack_state("before", marcher.before)
-        return arrays | _pack_linearisation(marcher)
+        arrays["march"] = np.array([marcher.proposal])
+        if marcher.before is not None and marcher.moment is not None:
+            arrays |= _pack_state("before", marcher.before) | {"moment": marcher.moment}
+        return arrays | _pack_newton(marcher.newton)
     control = marcher.controller
     stages = marcher.stepper.method.stages
     arrays["march"] = np.array([marcher.proposal, control.last_size, control.last_error, stages])
-    return arrays | {"base": marcher.base} | _pack_linearisation(marcher.stepper)
+    return arrays | {"base": marcher.base} | _pack_newton(marcher.stepper.newton)
 
 
 def unpack(marcher: Marcher | FixedMarcher, arrays: Arrays) -> None:
@@ -48,16 +49,16 @@ def unpack(marcher: Marcher | FixedMarcher, arrays: Arrays) -> None:
     if "last.size" in arrays:
         marcher.last = Past(float(arrays["last.size"][0]), *(arrays[f"last.{name}"] for name in PAST))
     if isinstance(marcher, FixedMarcher):
-        marcher.size = float(arrays["march"][0])
-        if "before.time" in arrays:
-            marcher.before = _unpack_state("before", arrays, equations)
-        _unpack_linearisation(marcher, arrays, equations)
+        marcher.proposal = float(arrays["march"][0])
+        if "moment" in arrays:
+            marcher.before, marcher.moment = _unpack_state("before", arrays, equations), arrays["moment"]
+        _unpack_newton(marcher.newton, arrays, equations)
         return
     marcher.proposal, last_size, last_error, stages = map(float, arrays["march"])
     marcher.use_stages(int(stages))
     marcher.controller = Controller(marcher.controller.exponent, last_size, last_error)
     marcher.base = arrays["base"]
-    _unpack_linearisation(marcher.stepper, arrays, equations)
+    _unpack_newton(marcher.stepper.newton, arrays, marcher.stepper.form(equations))
 
 
 def _pack_state(name: str, state: State) -> Arrays:
@@ -84,15 +85,15 @@ def _unpack_mesh(arrays: Arrays) -> Mesh:
     return Mesh(arrays["mesh.edges"], segment, arrays["mesh.stiffness"], arrays["mesh.density"])
 
 
-def _pack_linearisation(newton: RadauStepper | FixedMarcher) -> Arrays:
+def _pack_newton(newton: Newton) -> Arrays:
     kept = newton.linearisation
     if kept is None:
         return {}
     instant = {f"instant.{name}": value for name, value in kept.instant._asdict().items()}
-    return instant | {"newton": np.array([kept.step, newton.contraction])}
+    return instant | {"newton": np.array([kept.length, newton.contraction])}
 
 
-def _unpack_linearisation(newton: RadauStepper | FixedMarcher, arrays: Arrays, equations: BoxEquations) -> None:
+def _unpack_newton(newton: Newton, arrays: Arrays, equations: Equations) -> None:
     if "newton" not in arrays:
         return
     length, newton.contraction = map(float, arrays["newton"])

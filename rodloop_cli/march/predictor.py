@@ -19,7 +19,7 @@ SHRINKING = 0.7
 
 
 class Past(NamedTuple):
-    """What the predictor remembers of the last step.
+    """What the predictor remembers of the last step (BDF2: of the last two as one).
 
     nodes: (s,);  unknowns: (s + 1, n, 6 + m) at its start and stages;  force: (2, s, n, m + 1) at its stages.
     """

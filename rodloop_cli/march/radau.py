@@ -10,14 +10,15 @@ from functools import cache
 import numpy as np
 
 from rodloop_cli.errors import SingularSystem
+from rodloop_cli.march.newton import Newton
 from rodloop_cli.march.predictor import Past, predict
-from rodloop_cli.march.stages import REUSE_BELOW, Equations, Linearisation, StageModes, solve_stages
+from rodloop_cli.march.stages import Equations, StageModes
 from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.radau import RadauIIA, radau_iia
 from rodloop_cli.physics.boxes import BoxEquations
-from rodloop_cli.physics.equations import NODAL, Fields, Instant, Iterate, Motion
+from rodloop_cli.physics.equations import NODAL, Fields, Motion
 from rodloop_cli.physics.whole_loop import LoopEquations
 
 MOST_FULL = 64
@@ -36,23 +37,14 @@ LEAST_TARGET = 3e-14
 
 
 class RadauStepper:
-    """Makes steps; remembers the linearisation and how fast it contracted, which only speeds it up."""
+    """Makes steps; ``newton`` remembers the linearisation and how fast it contracted, which only speeds it up."""
 
     def __init__(self, stages: int, work: Work, iteration_error: float = ITERATION_ERROR) -> None:
         self.method = radau_iia(stages)
-        self.work, self._iteration_error = work, iteration_error
-        self._modes = _modes(stages)
-        self.linearisation: Linearisation | None = None
-        self.contraction = 1.0
+        self.newton = Newton(_modes(stages), work)
+        self._iteration_error = iteration_error
         self._boxes: BoxEquations | None = None
         self._solved: Equations
-
-    @property
-    def reusable_size(self) -> float | None:
-        """Length of step for which the present linearisation still serves."""
-        if self.linearisation is None or self.contraction > REUSE_BELOW:
-            return None
-        return self.linearisation.step
 
     def step(
         self, state: State, last: Past | None, size: float, allowance: float, most_target: float = np.inf
@@ -61,53 +53,25 @@ class RadauStepper:
 
         ``most_target`` bounds Newton's share of it.
         """
-        method, equations = self.method, self._form(state.equations)
+        method, equations = self.method, self.form(state.equations)
         motion = _motion(method, state, size)
         guess = predict(state, last, method.nodes, size)
-
-        def renew(iterate: Iterate, trusted: bool) -> Linearisation:
-            self.work.factorizations += 1
-            instant = iterate.instant(method.stages // 2, None if trusted else state.force)
-            return self.linearised(state.equations, size, instant)
-
-        try:
-            solution, self.linearisation = solve_stages(
-                equations,
-                motion,
-                guess,
-                self._kept(equations, size),
-                renew,
-                max(LEAST_TARGET, min(most_target, self._iteration_error * allowance)),
-            )
-        except SingularSystem:
-            solution, self.linearisation = None, None
+        target = max(LEAST_TARGET, min(most_target, self._iteration_error * allowance))
+        solution = self.newton.solve(equations, motion, guess, size, state.force, target)
         if solution is None:
-            self.linearisation = None
             return None
-        self.work.newton_iterations += solution.iterations
-        self.contraction = solution.contraction
         gained = solution.unknowns - state.unknowns
         rates = (motion.rates @ gained.reshape(method.stages, -1)).reshape(gained.shape)
         error = self._error(equations, state, solution.fields, size) / allowance
         return Step(state, size, method.nodes, solution.unknowns, rates, solution.fields, solution.iterations, error)
 
-    def linearised(self, equations: BoxEquations, size: float, instant: Instant) -> Linearisation:
-        """The factored systems of a step of this length. Raises SingularSystem."""
-        return Linearisation(self._form(equations), self._modes, size, instant)
-
-    def _form(self, equations: BoxEquations) -> Equations:
+    def form(self, equations: BoxEquations) -> Equations:
         """The equations in the form that is solved faster."""
         if self._boxes is not equations:
             self._boxes = self._solved = equations
             if equations.mesh.cells * equations.rule.m <= MOST_FULL:
                 self._solved = LoopEquations(equations.mesh, equations.rule, equations.load)
         return self._solved
-
-    def _kept(self, equations: Equations, size: float) -> Linearisation | None:
-        kept = self.linearisation
-        if kept is None or kept.equations is not equations or size != self.reusable_size:
-            return None
-        return kept
 
     def _error(self, equations: Equations, state: State, fields: Fields, size: float) -> float:
         """The embedded estimate, in positions.
@@ -116,7 +80,8 @@ class RadauStepper:
         is left is the real box system, already factored, under the force density -ρ[λ r_X + Σ e z_U/Δt + a0], r_X = Σ
         e z_X/Δt + u0.
         """
-        assert self.linearisation is not None
+        linearisation = self.newton.linearisation
+        assert linearisation is not None
         weights, rate = self.method.embedded / size, self.method.eigenvalues[0].real / size
         total = float(weights.sum())
         push = _weighted(rate * weights, fields.position) - (rate * total) * state.position
@@ -124,7 +89,7 @@ class RadauStepper:
         push += state.acceleration
         push *= -state.equations.mesh.density[:, None]
         cosine, sine = fields.tangent[:, -1]
-        correction = self.linearisation.systems.solve_real(equations.load_response(cosine, sine, push[..., :-1]))
+        correction = linearisation.systems.solve_real(equations.load_response(cosine, sine, push[..., :-1]))
         return float(np.abs(equations.displacement(cosine, sine, correction)).max())
 
 

@@ -19,9 +19,6 @@ from rodloop_cli.physics.whole_loop import LoopEquations
 
 Equations = BoxEquations | LoopEquations
 
-REUSE_BELOW = 0.05
-"""A linearisation is kept for the next step of the same length while Newton contracts faster than this."""
-
 SLOW = 0.3
 """Contraction above which the linearisation is renewed in the middle of an iteration."""
 
@@ -49,7 +46,7 @@ CERTAIN = 0.05
 class StageModes:
     """Eigen-decomposition of the matrix of rates (before division by the step): see `RadauIIA` for the shapes.
 
-    All real where there is but one stage: half the work.
+    They may all be real where there is but one stage: half the work.
     """
 
     eigenvalues: AnyArray
@@ -70,11 +67,14 @@ class Solution(NamedTuple):
 
 
 class Linearisation:
-    """The factored systems of one instant and one matrix of rates."""
+    """The factored systems of one instant and one matrix of rates.
 
-    def __init__(self, equations: Equations, modes: StageModes, step: float, instant: Instant) -> None:
-        self.equations, self.step, self.instant, self._modes = equations, step, instant, modes
-        rates: AnyArray = modes.eigenvalues / step
+    length: what the eigenvalues are divided by, the step for Radau IIA and what BDF2 makes of it.
+    """
+
+    def __init__(self, equations: Equations, modes: StageModes, length: float, instant: Instant) -> None:
+        self.equations, self.length, self.instant, self._modes = equations, length, instant, modes
+        rates: AnyArray = modes.eigenvalues / length
         self.systems = equations.factored(rates, *instant)
 
     def correction(self, residual: Array) -> Array:

@@ -53,7 +53,8 @@ class Step:
     """One accepted step: the start, the stages, the end.
 
     nodes: (s,) stage times in (0, 1], the last 1;  unknowns, rates: (s, n, 6 + m);  fields at the stages;
-    error: estimated position error over its allowance (0 where the scheme has no estimate).
+    error: estimated position error over its allowance (0 where the scheme has no estimate);
+    moment_at_start: (n, m + 1) where moment and force there are as good as at the stages (BDF2 after its first step).
     """
 
     start: State
@@ -64,6 +65,7 @@ class Step:
     fields: Fields
     newton_iterations: int
     error: float
+    moment_at_start: Array | None = None
 
     @property
     def end(self) -> State:

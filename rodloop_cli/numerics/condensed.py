@@ -22,7 +22,8 @@ AnyArray = NDArray[Any]
 class CondensedSystems:
     """Factors of several box systems that share a mesh.
 
-    responses: (E, n, b + m, b + m); system 0 is real (its imaginary part is dropped), the others complex.
+    responses: (E, n, b + m, b + m); system 0 is real (its imaginary part is dropped), the others complex; or
+    all of a real type.
     Raises SingularSystem when one of them cannot be factored.
     """
 

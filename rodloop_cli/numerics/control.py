@@ -43,3 +43,13 @@ def settle_on(proposal: float, reusable: float | None) -> float:
     if reusable is not None and reusable <= proposal <= WORTH_CHANGING * reusable:
         return reusable
     return proposal
+
+
+def without_sliver(size: float, remaining: float) -> float:
+    """A step that nearly reaches the end is stretched to it, and one that would leave less than itself goes half way.
+
+    A sliver of a last step would multiply round-off by Δt⁻² in its forces.
+    """
+    if 1.999 * size < remaining:
+        return size
+    return remaining if size > 0.999 * remaining else remaining / 2

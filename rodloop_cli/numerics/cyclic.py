@@ -26,7 +26,8 @@ class FoldedLayout:
     """Where the blocks of an n-node loop with b unknowns a node stand in LAPACK's band storage.
 
     node_order, equation_order: (n,) the node (equation) at each block position;  node_position: (n,) its inverse;
-    diagonal_of: (n b b,) flat indices of the entries of -G_i;  identity: (n b,) of the ones that multiply z_{i+1}.
+    transfer_entries: (n b b,) flat indices of the entries of -G_i;  identity_entries: (n b,) of the ones that multiply
+    z_{i+1}.
     """
 
     nodes: int

@@ -16,7 +16,7 @@ INSIDE = np.s_[..., :-1]
 
 
 class EnergyAccount:
-    """Adds up the dissipated energy from step to step and keeps the first row's total as reference."""
+    """Adds up the dissipated energy from step to step and keeps the total at t = 0 as reference."""
 
     def __init__(self, load: Load) -> None:
         self._load = load
@@ -65,8 +65,8 @@ class EnergyAccount:
 
     def memory(self) -> tuple[float, ...]:
         """What a continued run needs to know."""
-        first = self._first or (0.0, 0.0)
-        return (self._dissipated, *first, self.largest_residual, self.largest_change)
+        assert self._first is not None
+        return (self._dissipated, *self._first, self.largest_residual, self.largest_change)
 
     def restore(self, memory: Array) -> None:
         """Go on where the account with this memory was."""

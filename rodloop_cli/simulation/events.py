@@ -169,7 +169,7 @@ class AreaExtrema:
 
     @property
     def period(self) -> float | None:
-        """Time from the first minimum of the area to the second, or twice the time to it if the motion ended before."""
+        """Time from the first minimum of the area to the second, None before that."""
         if len(self.minima) >= 2:
             return self.minima[1][0] - self.minima[0][0]
         return None

@@ -125,7 +125,6 @@ class Run:
     def _record(self, step: Step, sink: RowSink, crossing: CrossingWatch) -> float | None:
         """Store what is due in a step; the time at which the run is to stop, if it is."""
         summary = self.summary
-        summary.cells = step.start.equations.mesh.cells
         if isinstance(self.marcher, Marcher):
             departure = self.begun.departure
             summary.amplification.watch(step, departure.of(step.end, self.marcher.base) / departure.scale)
@@ -154,6 +153,7 @@ class Run:
     def _finish(self, sink: RowSink) -> None:
         account, summary = self.recorder.account, self.summary
         summary.energy_residual, summary.energy_change = account.largest_residual, account.largest_change
+        summary.cells = self.marcher.state.equations.mesh.cells
         outcome = outcome_attributes(summary.outcome, summary.totals)
         warnings = [self.warning] * bool(self.warning) + summary.warnings
         warned: dict[str, Attribute] = {"warning": "; ".join(warnings)} if warnings else {}

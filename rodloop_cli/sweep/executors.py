@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from rodloop_cli.errors import OutputError
 from rodloop_cli.sweep.slots import ProcessSlots
 
-EXECUTORS = ("process", "dask", "mpi")
-
 QUEUED = 2
 """Tasks handed out for each remote worker: one to work at, one on the way."""
 

@@ -122,7 +122,7 @@ def _kind(outcome: str) -> str:
 
 
 def _measure(trial: Trial, run: Run, rows: Rows) -> None:
-    trial.work, trial.cells = asdict(run.work), run.summary.cells
+    trial.work, trial.cells = asdict(run.work), run.marcher.state.equations.mesh.cells
     trial.retries = run.work.rejected + run.work.newton_failures
     if rows.stored:
         trial.residual = relative_residual(rows)

@@ -84,7 +84,27 @@ def test_a_factorization_serves_many_steps():
     kept = simulate(Case(**given))
     assert kept.attrs["total_factorizations"] < kept.attrs["total_steps"] / 4
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rodloop_cli.march.bdf2.REUSE_BELOW", 0.0)
+        patch.setattr("rodloop_cli.march.newton.REUSE_BELOW", 0.0)
         anew = simulate(Case(**given))
     assert anew.attrs["total_factorizations"] >= anew.attrs["total_steps"]
     np.testing.assert_allclose(kept.x, anew.x, rtol=0, atol=1e-6)
+
+
+def test_rows_within_a_step_are_of_second_order_too():
+    """Moment and force as well: the bending energy half way through a step."""
+    middle, energies = 0.25, []
+    for steps in (20, 40, 80, 320):
+        fixed = {"scheme": "bdf2", "N": 32, "dt": middle / (steps + 0.5)}
+        stored = {"snapshot_times": (middle,), "output_points": 8, "t_end": 0.3}
+        energies.append(simulate(Case(**FAST | fixed | stored)).bending_energy.item())
+    errors = np.abs(np.array(energies[:3]) - energies[3])
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([2.0, 2.0], abs=0.3)
+
+
+@pytest.mark.parametrize("excess", [1e-5, 1e-7, 1e-9])
+def test_the_last_step_is_no_sliver(excess):
+    """What Newton leaves would be closed with forces of that over Δt²: 571 and more instead of 5.8."""
+    loop = {"p": 3.8, "stiffness_ratio": 5.0, "scheme": "bdf2", "N": 40, "dt": 0.01, "snapshots": 3}
+    whole, longer = (simulate(Case(**loop, t_end=t_end)) for t_end in (0.5, 0.5 + excess))
+    np.testing.assert_allclose(longer.axial_force[-1], whole.axial_force[-1], rtol=0, atol=0.05)
+    assert longer.attrs["total_steps"] <= 51

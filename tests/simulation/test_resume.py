@@ -54,6 +54,11 @@ def test_so_does_one_that_goes_on_with_fewer_stages(tmp_path: Path, monkeypatch:
     assert used.count(3) >= 3
 
 
+@pytest.mark.parametrize(("name", "steps"), [("bdf2", 1), ("bdf2", 2), ("bdf2", 50)])
+def test_so_does_one_that_was_interrupted_early_or_at_the_end(tmp_path: Path, name: str, steps: int) -> None:
+    continued_equals_uninterrupted(tmp_path, name, steps)
+
+
 def continued_equals_uninterrupted(tmp_path: Path, name: str, steps: int) -> None:
     whole, path = tmp_path / "whole.nc", tmp_path / "parts.nc"
     run = Run.of(parse_case(CASES[name]))
@@ -73,7 +78,8 @@ def continued_equals_uninterrupted(tmp_path: Path, name: str, steps: int) -> Non
         assert first.sizes == second.sizes
         for variable in first.data_vars:
             np.testing.assert_allclose(second[variable], first[variable], rtol=0, atol=1e-12, err_msg=str(variable))
-        same = ("outcome", "total_steps", "total_newton_iterations", "total_refinements", "largest_energy_residual")
+        totals = [f"total_{name}" for name in ("steps", "newton_iterations", "refinements", "cells")]
+        same = ("outcome", *totals, "largest_energy_residual")
         assert [first.attrs[key] for key in same] == [second.attrs[key] for key in same]
         for key in (key for key in first.attrs if key.startswith("lobe_event")):
             np.testing.assert_array_equal(first.attrs[key], second.attrs[key])
