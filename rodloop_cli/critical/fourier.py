@@ -15,8 +15,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from rodloop_cli.errors import ConvergenceError
-from rodloop_cli.numerics.gauss import GaussRule
-from rodloop_cli.physics.rod import Array, Mesh, Rod
+from rodloop_cli.numerics.gauss import Array, GaussRule
+from rodloop_cli.physics.rod import Mesh, Rod
 from rodloop_cli.statics.loaded import mesh_of
 
 DEFAULT_MODES = 40

@@ -15,7 +15,7 @@ from rodloop_cli.march.state import State, Step
 from rodloop_cli.numerics.gauss import Array, lagrange_matrix
 from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.closure import Closure, left_ends
-from rodloop_cli.physics.equations import FX, FY, NODAL, THETA
+from rodloop_cli.physics.equations import FORCE, NODAL, THETA
 
 POSITION_ERROR = 0.6
 """Position error inside a cell over (last Legendre coefficients of its angles) (its length) / (2 m + 1).
@@ -118,7 +118,7 @@ class Finer:
         position = closure.position(unknowns, closure.centre(self.interpolate(state.position)))
         velocity = closure.velocity(unknowns, rates, closure.centre(self.interpolate(state.velocity)))
         force = self.interpolate(state.force)
-        unknowns[:, FX : FY + 1] = left_ends(force)
+        unknowns[:, FORCE] = left_ends(force)
         acceleration = self.interpolate(state.acceleration)
         return State(state.time, self.equations, unknowns, rates, position, velocity, acceleration, force)
 

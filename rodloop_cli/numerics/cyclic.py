@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from rodloop_cli.errors import SingularSystem
-from rodloop_cli.numerics.gauss import Array
 
 Indices = NDArray[np.intp]
 AnyArray = NDArray[Any]
@@ -96,12 +95,3 @@ class CyclicFactorization:
         solution, _ = self._solve(self._factors, layout.band, layout.band, folded, self._pivots, overwrite_b=1)
         unfolded: AnyArray = solution.reshape(layout.nodes, layout.block)[layout.node_position]
         return unfolded
-
-
-def cyclic_residual(transfers: AnyArray, solution: AnyArray) -> AnyArray:
-    """``z_{i+1} - G_i z_i`` (n, b), for checks."""
-    residual: AnyArray = np.roll(solution, -1, axis=0) - np.einsum("nij,nj->ni", transfers, solution)
-    return residual
-
-
-__all__ = ["Array", "CyclicFactorization", "FoldedLayout", "cyclic_residual", "folded_layout"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from rodloop_cli.errors import SingularSystem
 from rodloop_cli.numerics.condensed import CondensedSystems
-from rodloop_cli.numerics.gauss import GaussRule
+from rodloop_cli.numerics.gauss import Array, GaussRule
 from rodloop_cli.physics.equations import (
     FORCE,
     FX,
@@ -34,7 +34,7 @@ from rodloop_cli.physics.equations import (
     Y,
     kinematics,
 )
-from rodloop_cli.physics.rod import Array, Mesh
+from rodloop_cli.physics.rod import Mesh
 
 
 class BoxEquations(Balance):
@@ -122,7 +122,7 @@ class BoxEquations(Balance):
         ends.
         """
         turned = np.stack([-sine, cosine]) * (correction[:, NODAL:] * self._length)
-        moved: Array = turned @ self._integrate + correction[:, X : Y + 1].T[..., None]
+        moved: Array = turned @ self._integrate + correction[:, POSITION].T[..., None]
         return moved
 
     def linearise(self, cosine: Array, sine: Array, force: Array, velocity: Array) -> Array:
@@ -157,9 +157,9 @@ class BoxEquations(Balance):
         turning = self._integrate_rows @ (moment[:, :, :-1] * self._length_by_stiffness[..., None])
         turning[0, ..., THETA] += 1
         response = np.zeros((parts, n, size, size))
-        response[0, :, X : Y + 1] = position[:, :, -1].swapaxes(0, 1)
+        response[0, :, POSITION] = position[:, :, -1].swapaxes(0, 1)
         response[:, :, THETA], response[:, :, MOMENT] = turning[:, :, -1], moment[:, :, -1]
-        response[:, :, FX : FY + 1] = force_response[:, :, :, -1].swapaxes(1, 2)
+        response[:, :, FORCE] = force_response[:, :, :, -1].swapaxes(1, 2)
         response[:, :, NODAL:] = turning[:, :, :-1]
         return response
 
@@ -209,7 +209,7 @@ class BoxEquations(Balance):
         moment = shear @ self._integrate
         turning = (moment[:, :-1] * self._length_by_stiffness) @ self._integrate
         out = np.zeros((len(turning), NODAL + cosine.shape[1]))
-        out[:, FX : FY + 1] = force[..., -1].T
+        out[:, FORCE] = force[..., -1].T
         out[:, MOMENT], out[:, THETA], out[:, NODAL:] = moment[:, -1], turning[:, -1], turning[:, :-1]
         return out
 

@@ -4,9 +4,9 @@ centre.
 
 import numpy as np
 
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.boxes import BoxEquations
-from rodloop_cli.physics.equations import NODAL, THETA, X, Y
-from rodloop_cli.physics.rod import Array
+from rodloop_cli.physics.equations import FORCE, NODAL, POSITION, THETA
 
 CLOSED = 1e-15
 """The gap that round-off leaves in a loop of length 2π."""
@@ -72,7 +72,7 @@ class Closure:
         integral: Array = inside + np.roll(nodes, 1, axis=1)[..., None]
         integral[:, 0] = inside[:, 0]
         integral += (centre - self.centre(integral))[:, None, None]
-        values[:, X : Y + 1] = left_ends(integral)
+        values[:, POSITION] = left_ends(integral)
         return integral
 
 
@@ -85,7 +85,7 @@ def turned(unknowns: Array, angle: float) -> Array:
     """The loop turned about the origin by an angle: positions, forces and angles."""
     out = unknowns.copy()
     rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    for pair in (slice(X, Y + 1), slice(4, 6)):
+    for pair in (POSITION, FORCE):
         out[..., pair] = unknowns[..., pair] @ rotation.T
     out[..., THETA] += angle
     out[..., NODAL:] += angle

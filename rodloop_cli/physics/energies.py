@@ -6,9 +6,9 @@ any leading dimensions …; on Gauss points they end in (n, m).
 
 import numpy as np
 
-from rodloop_cli.numerics.gauss import GaussRule
+from rodloop_cli.numerics.gauss import Array, GaussRule
 from rodloop_cli.physics.equations import Load
-from rodloop_cli.physics.rod import Array, Mesh
+from rodloop_cli.physics.rod import Mesh
 
 
 class Quadrature:

@@ -17,8 +17,8 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from rodloop_cli.numerics.gauss import GaussRule
-from rodloop_cli.physics.rod import Array, Mesh
+from rodloop_cli.numerics.gauss import Array, GaussRule
+from rodloop_cli.physics.rod import Mesh
 
 AnyArray = NDArray[Any]
 

@@ -10,6 +10,7 @@ cost. So each integral is one product: its arguments stand side by side in one a
 
 import numpy as np
 
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.equations import (
     FORCE,
     FX,
@@ -27,7 +28,6 @@ from rodloop_cli.physics.equations import (
     kinematics,
 )
 from rodloop_cli.physics.loop_integrals import LoopIntegrals
-from rodloop_cli.physics.rod import Array
 
 
 class LoopIterate:

@@ -10,9 +10,9 @@ from math import pi
 
 import numpy as np
 
-from rodloop_cli.numerics.gauss import GaussRule
+from rodloop_cli.numerics.gauss import Array, GaussRule
 from rodloop_cli.physics.equations import MOMENT, NODAL, THETA, Balance, Load
-from rodloop_cli.physics.rod import Array, Mesh
+from rodloop_cli.physics.rod import Mesh
 
 INTEGRATED = THETA
 """The first of the rows of the residual that are integrals of the shear, see `LoopIntegrals._from_shear`."""

@@ -12,7 +12,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from rodloop_cli.numerics.gauss import Array
+
 LENGTH = 2 * pi
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rodloop_cli.numerics.gauss import GaussRule, lagrange_matrix
-from rodloop_cli.physics.rod import Array, Mesh
+from rodloop_cli.numerics.gauss import Array, GaussRule, lagrange_matrix
+from rodloop_cli.physics.rod import Mesh
 
 MOST_FULL = 128
 """Values on the cells up to which one full matrix is faster than picking the cell of every point."""

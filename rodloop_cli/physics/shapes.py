@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rodloop_cli.numerics.gauss import gauss_rule
-from rodloop_cli.physics.rod import LENGTH, Array, Rod
+from rodloop_cli.numerics.gauss import Array, gauss_rule
+from rodloop_cli.physics.rod import LENGTH, Rod
 
 QUADRATURE_POINTS = 16
 CELLS_PER_WAVE = 2

@@ -13,7 +13,7 @@ The order of the unknowns is that of `loop_integrals`.
 import numpy as np
 
 from rodloop_cli.numerics.full import Complex, FullSystems
-from rodloop_cli.numerics.gauss import GaussRule
+from rodloop_cli.numerics.gauss import Array, GaussRule
 from rodloop_cli.physics.equations import (
     FORCE,
     FX,
@@ -27,7 +27,7 @@ from rodloop_cli.physics.equations import (
 )
 from rodloop_cli.physics.lifted import LoopIterate
 from rodloop_cli.physics.loop_integrals import INTEGRATED, LoopIntegrals
-from rodloop_cli.physics.rod import Array, Mesh
+from rodloop_cli.physics.rod import Mesh
 
 
 class LoopEquations(LoopIntegrals):

@@ -20,8 +20,8 @@ from functools import cached_property
 
 import numpy as np
 
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.equations import NODAL
-from rodloop_cli.physics.rod import Array
 from rodloop_cli.statics.bordered import factorized
 from rodloop_cli.statics.loaded import Loaded
 

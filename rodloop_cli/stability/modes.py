@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.equations import Load
-from rodloop_cli.physics.rod import Array, Rod
+from rodloop_cli.physics.rod import Rod
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.stability.shapes import OUTPUT_POINTS, Mode, output_arclengths, sampled
 from rodloop_cli.stability.spectrum import eigenmotions

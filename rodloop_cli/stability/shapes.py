@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rodloop_cli.numerics.gauss import lagrange_derivative
+from rodloop_cli.numerics.gauss import Array, lagrange_derivative
 from rodloop_cli.physics.equations import NODAL, THETA
 from rodloop_cli.physics.lobes import count_lobes
-from rodloop_cli.physics.rod import Array
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.stability.spectrum import Eigenmotion
 from rodloop_cli.statics.loaded import Loaded

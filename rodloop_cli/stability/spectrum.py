@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.equations import Load
-from rodloop_cli.physics.rod import Array
 from rodloop_cli.stability.compliance import Compliance
 from rodloop_cli.statics.loaded import Loaded
 

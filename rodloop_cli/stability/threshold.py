@@ -7,10 +7,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.roots import bracketed_root
 from rodloop_cli.physics.clearance import crossing_indicator
 from rodloop_cli.physics.crossing import crosses_itself
-from rodloop_cli.physics.rod import Array
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.stability.compliance import Compliance
 from rodloop_cli.stability.shapes import output_arclengths

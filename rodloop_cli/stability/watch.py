@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
-from rodloop_cli.physics.rod import Array
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.stability.compliance import Compliance
 from rodloop_cli.statics.branch import FEW_ITERATIONS, FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, BranchPoint
 from rodloop_cli.statics.loaded import Loaded

@@ -14,8 +14,8 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from rodloop_cli.errors import SingularSystem
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, THETA, X, Y
-from rodloop_cli.physics.rod import Array
 
 Indices = NDArray[np.int_]
 

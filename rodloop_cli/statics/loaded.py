@@ -5,12 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
-from rodloop_cli.numerics.gauss import GaussRule, gauss_rule
+from rodloop_cli.numerics.gauss import Array, GaussRule, gauss_rule
 from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.closure import Closure, left_ends, turned
 from rodloop_cli.physics.energies import Quadrature
-from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, THETA, Fields, Load, X, Y
-from rodloop_cli.physics.rod import Array, Mesh, Rod, cells_by_length
+from rodloop_cli.physics.equations import FX, FY, MOMENT, NODAL, POSITION, THETA, Fields, Load
+from rodloop_cli.physics.rod import Mesh, Rod, cells_by_length
 from rodloop_cli.physics.shapes import circle
 from rodloop_cli.statics.relaxation import laid_on, unloaded
 
@@ -135,7 +135,7 @@ class Loaded:
             return None
         node = self.unknowns[0]
         first = node[MOMENT] / self.equations.mesh.stiffness[0]
-        x, y = self.position - node[X : Y + 1, None, None]
+        x, y = self.position - node[POSITION, None, None]
         start = np.array([np.cos(node[THETA]), np.sin(node[THETA])])
         return self.tangent - start[:, None, None] - first * np.stack([-y, x]), curvature - first
 
@@ -167,5 +167,5 @@ def upright(loop: Loaded) -> Loaded:
     closure = Closure(loop.equations)
     unknowns = turned(loop.unknowns, -closure.mean_turn(loop.unknowns))
     position = loop.equations.shape(unknowns[None])[1][:, 0]
-    unknowns[:, X : Y + 1] -= closure.centre(position)
+    unknowns[:, POSITION] -= closure.centre(position)
     return Loaded(loop.equations, unknowns)

@@ -6,8 +6,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.equations import NODAL
-from rodloop_cli.physics.rod import LENGTH, Array
+from rodloop_cli.physics.rod import LENGTH
 from rodloop_cli.statics.bordered import Border, factorized
 from rodloop_cli.statics.loaded import Loaded
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from rodloop_cli.errors import ConvergenceError
 from rodloop_cli.numerics.condensed import CondensedSystems
-from rodloop_cli.numerics.gauss import GaussRule
+from rodloop_cli.numerics.gauss import Array, GaussRule
 from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.closure import Closure, turned
 from rodloop_cli.physics.equations import MOMENT, NODAL, THETA, Load, Motion
-from rodloop_cli.physics.rod import LENGTH, Array, Mesh
+from rodloop_cli.physics.rod import LENGTH, Mesh
 from rodloop_cli.physics.sampling import Sampler
 from rodloop_cli.physics.shapes import Shape, circle
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.physics.equations import THETA
-from rodloop_cli.physics.rod import Array
 from rodloop_cli.statics.branch import BranchPoint
 from rodloop_cli.statics.loaded import Loaded
 from rodloop_cli.statics.newton import Tangent

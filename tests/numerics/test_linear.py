@@ -5,7 +5,7 @@ import pytest
 
 from rodloop_cli.errors import SingularSystem
 from rodloop_cli.numerics.condensed import CondensedSystems
-from rodloop_cli.numerics.cyclic import CyclicFactorization, cyclic_residual, folded_layout
+from rodloop_cli.numerics.cyclic import CyclicFactorization, folded_layout
 
 NODES = pytest.mark.parametrize("nodes", range(2, 10))
 
@@ -24,6 +24,11 @@ def dense_loop(transfers):
         matrix[i, :, (i + 1) % nodes, :] += np.eye(block)
         matrix[i, :, i, :] -= transfers[i]
     return matrix.reshape(nodes * block, -1)
+
+
+def cyclic_residual(transfers, solution):
+    """(n, b): z_{i+1} - G_i z_i."""
+    return np.roll(solution, -1, axis=0) - np.einsum("nij,nj->ni", transfers, solution)
 
 
 @NODES

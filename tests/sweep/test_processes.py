@@ -75,8 +75,8 @@ def statuses(folder):
 
 @pytest.mark.parametrize("output", ["fields", "scalars"])
 def test_a_sweep_killed_at_random_ends_complete_with_nothing_run_twice(start, sweep_file, tmp_path, output):
-    folder, dice = tmp_path / "out", random.Random(output)
-    path = sweep_file("p: {linspace: [1, 48, 96]}", more=f"output: {output}")
+    folder, dice, members = tmp_path / "out", random.Random(output), 240
+    path = sweep_file(f"p: {{linspace: [1, 48, {members}]}}", more=f"output: {output}")
     for wanted in (dice.randint(10 * kill, 10 * kill + 6) for kill in (1, 2, 3)):
         sweep = start(path, folder)
         workers = workers_of(sweep)
@@ -85,12 +85,12 @@ def test_a_sweep_killed_at_random_ends_complete_with_nothing_run_twice(start, sw
         sweep.kill()
         sweep.communicate()
         until(lambda pids=workers: not any(is_alive(pid) for pid in pids))
-    assert len(rows(folder)) < 96
+    assert len(rows(folder)) < members
     shown = start(path, folder, "--json").communicate(timeout=60)[0]
     assert json.loads(shown)["failed"] == 0
     ended = Counter(row["member"] for row in rows(folder))
-    assert (len(ended), set(ended.values())) == (96, {1})
-    assert statuses(folder) == {Status.reached_end: 96}
+    assert (len(ended), set(ended.values())) == (members, {1})
+    assert statuses(folder) == {Status.reached_end: members}
     assert not list(folder.glob("*.part"))
 
 
