@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rodloop_cli.case import Case
 from rodloop_cli.errors import ConvergenceError
 from rodloop_cli.simulation import Run
+from scripts.benchmarks.tolerance import distance
 
 Array = NDArray[np.float64]
 Row = Mapping[str, Any]
@@ -146,20 +147,24 @@ def departure(rows: Rows, scale: float) -> Array:
 
 
 def compare(trial: Trial, keywords: Mapping[str, Any], rows: Rows, seconds: float) -> None:
-    """Fill in the errors against a run at a hundredth of the tolerance, if that ends."""
+    """Fill in the errors against a run at a hundredth of the tolerance, if that ends.
+
+    What tol promises is compared: positions in the frame of the loop, up to the first crossing.
+    """
     finer, precise = attempt({**keywords, "tol": max(keywords["tol"] / 100, 1e-9)}, seconds)
     if finer.kind not in {"end", "crossing", "settled"}:
         return
-    common = [i for i in range(min(len(rows.stored), len(precise.stored))) if _same_time(rows, precise, i)]
+    common = [i for i in range(min(len(rows.stored), len(precise.stored))) if _comparable(rows, precise, i)]
     scale = max((abs(w.get("amplitude", 0.0)) for w in _waves(keywords)), default=0.0)
-    error = np.abs(rows.position[common] - precise.position[common]).max(axis=(1, 2))
+    error = np.array([distance(rows.position[i], precise.position[i]) for i in common])
     allowed = keywords["tol"] * departure(precise, scale or UNPERTURBED)[common]
     trial.error = float(error.max() / keywords["tol"])
     trial.relative_error = float((error / allowed).max())
 
 
-def _same_time(rows: Rows, others: Rows, i: int) -> bool:
-    return bool(rows.stored[i]["t"] == others.stored[i]["t"])
+def _comparable(rows: Rows, others: Rows, i: int) -> bool:
+    row, other = rows.stored[i], others.stored[i]
+    return bool(row["t"] == other["t"]) and not (row["crossing"] or other["crossing"])
 
 
 def _waves(keywords: Mapping[str, Any]) -> list[Mapping[str, float]]:
