@@ -8,22 +8,25 @@ from functools import cache
 
 import numpy as np
 
-from rodloop_cli.errors import ConvergenceError
 from rodloop_cli.march.dense import Shapes
-from rodloop_cli.march.state import State, Step
+from rodloop_cli.march.state import Step
 from rodloop_cli.numerics.gauss import Array
 from rodloop_cli.numerics.roots import Point, bracketed_root, root_between
 from rodloop_cli.physics.boxes import BoxEquations
 from rodloop_cli.physics.clearance import crossing_indicator, least_clearance
-from rodloop_cli.physics.closure import Closure
 from rodloop_cli.physics.crossing import crosses_itself, star_shaped
 from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.rod import LENGTH
 from rodloop_cli.physics.sampling import Sampler
-from rodloop_cli.statics import relax
 
 TIME_PRECISION = 1e-9
 """Of the step in which an event is located."""
+
+PROMINENCE = 0.01
+"""Of the whole change of the area: what a swing must be worth. Waves from the junctions ripple the area by less."""
+
+ROUND_OFF = 1e-9
+"""A change of the area by less is none."""
 
 WATCHED_POINTS, LOCATED_POINTS = 128, 400
 """Points of the polygons on which a crossing is noticed and located; their sides leave the curve by 3e-4 κ and 3e-5
@@ -119,10 +122,15 @@ def _sampler(equations: BoxEquations, points: int) -> Sampler:
 
 @dataclass
 class AreaExtrema:
-    """Minima and maxima of the enclosed area: (time, area) each, in order."""
+    """Minima and maxima of the enclosed area: (time, area) each, in order.
+
+    first_area, last_area: at the beginning and the end of the run.
+    """
 
     minima: list[tuple[float, float]] = field(default_factory=list)
     maxima: list[tuple[float, float]] = field(default_factory=list)
+    first_area: float = 0.0
+    last_area: float = 0.0
     sign: float = 0.0
     _equations: BoxEquations | None = None
     _quadrature: Quadrature | None = None
@@ -167,44 +175,27 @@ class AreaExtrema:
             area = quadrature.area(at.position[..., :-1], at.tangent).item()
             (self.minima if self.sign < 0 else self.maxima).append((time, area))
 
+    def prominent_minima(self) -> list[tuple[float, float]]:
+        """Those on either side of which the area rises by PROMINENCE of its whole change before it falls below them."""
+        points = [(-np.inf, self.first_area), *sorted(self.minima + self.maxima), (np.inf, self.last_area)]
+        areas = np.array([area for _, area in points])
+        least = max(ROUND_OFF, PROMINENCE * float(np.ptp(areas)))
+        known = set(self.minima)
+        return [
+            point
+            for i, point in enumerate(points)
+            if point in known and min(_rise(areas[i::-1]), _rise(areas[i:])) >= least
+        ]
+
     @property
     def period(self) -> float | None:
         """Time from the first minimum of the area to the second, None before that."""
-        if len(self.minima) >= 2:
-            return self.minima[1][0] - self.minima[0][0]
-        return None
+        minima = self.prominent_minima()
+        return minima[1][0] - minima[0][0] if len(minima) >= 2 else None
 
 
-class RestWatch:
-    """Tells when a damped loop has come to rest at an equilibrium.
-
-    Slowness alone is no proof: a strongly damped loop creeps. Once it is slow, the equilibrium nearest to its shape
-    is found by the static solver; at rest means within ``tol`` of it. Asked again only after the loop has slowed down
-    tenfold.
-
-    slow: the speed below which it is asked.
-    """
-
-    def __init__(self, tol: float) -> None:
-        self._tol = tol
-        self.slow = tol
-
-    def settled(self, state: State) -> bool:
-        """Whether this state is at rest."""
-        speed = float(np.abs(state.velocity).max())
-        if speed > self.slow:
-            return False
-        self.slow = speed / 10
-        try:
-            equilibrium = relax(state.equations, state.unknowns)
-        except ConvergenceError:
-            return False
-        return distance(state, equilibrium) < self._tol
-
-
-def distance(state: State, unknowns: Array) -> float:
-    """Largest distance between two positions of the loop on one mesh, their centres together."""
-    position = state.equations.shape(unknowns[None])[1][:, 0]
-    closure = Closure(state.equations)
-    shift = closure.centre(position) - closure.centre(state.position)
-    return float(np.abs(position - shift[:, None, None] - state.position).max())
+def _rise(areas: Array) -> float:
+    """How far ``areas`` (k,) rise above the first of them before they fall below it."""
+    below = np.flatnonzero(areas < areas[0])
+    until = below[0] if below.size else len(areas)
+    return float(areas[:until].max() - areas[0])

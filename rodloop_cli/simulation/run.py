@@ -1,5 +1,6 @@
 """The composition: a case in, rows and an outcome out."""
 
+import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import pi
@@ -16,15 +17,20 @@ from rodloop_cli.errors import ConvergenceError
 from rodloop_cli.march.bdf2 import FixedMarcher
 from rodloop_cli.march.loop import Marcher, Plan
 from rodloop_cli.march.refine import Refiner
-from rodloop_cli.march.state import Step
+from rodloop_cli.march.state import State, Step
 from rodloop_cli.march.work import Work
 from rodloop_cli.numerics.gauss import Array
+from rodloop_cli.physics.energies import Quadrature
 from rodloop_cli.physics.lobes import find_lobes
 from rodloop_cli.simulation.amplification import Amplification
-from rodloop_cli.simulation.events import CrossingWatch, RestWatch
+from rodloop_cli.simulation.events import CrossingWatch
 from rodloop_cli.simulation.record import Recorder, Row
+from rodloop_cli.simulation.rest import RestWatch
 from rodloop_cli.simulation.start import Start, fastest_time, growth_time, start
 from rodloop_cli.simulation.summary import Summary
+
+LOG = logging.getLogger(__name__)
+"""The mesh (-v) and every step (-vv)."""
 
 Progress = Callable[[float], None]
 """Told the time reached, after every step."""
@@ -106,31 +112,41 @@ class Run:
         return self.summary
 
     def _follow(self, sink: RowSink, progress: Progress | None, between: BetweenSteps | None) -> str:
-        crossing = CrossingWatch()
+        crossing, cells = CrossingWatch(), 0
         if not self.recorder.begun:
             for row in self.recorder.start(self.begun.step):
                 self._store(row, sink)
         for step in self.marcher:
-            stopped = self._record(step, sink, crossing)
+            cells = _logged(step, cells)
+            settled = "settled" in self.case.stop_at and self.rest.settled(step.end, self._departure(step))
+            stopped = self._record(step, sink, crossing, last=settled)
             if progress:
                 progress(step.start.time + step.size if stopped is None else stopped)
-            if stopped is not None:
+            if stopped is not None and stopped == self.summary.first_crossing:
                 return f"stopped at first crossing, t = {stopped:.4g}"
-            if "settled" in self.case.stop_at and self.rest.settled(self.marcher.state):
-                return f"settled at an equilibrium, t = {self.marcher.state.time:.4g}"
+            if stopped is not None:
+                return f"settled at an equilibrium, t = {stopped:.4g}"
             if between:
                 between.after_step()
         return "reached t_end"
 
-    def _record(self, step: Step, sink: RowSink, crossing: CrossingWatch) -> float | None:
-        """Store what is due in a step; the time at which the run is to stop, if it is."""
+    def _departure(self, step: Step) -> float:
+        """How far the loop has gone at the end of a step."""
+        base = self.marcher.base if isinstance(self.marcher, Marcher) else self.begun.state.position
+        return self.begun.departure.of(step.end, base)
+
+    def _record(self, step: Step, sink: RowSink, crossing: CrossingWatch, *, last: bool) -> float | None:
+        """Store what is due in a step, its end too if it is the ``last``; the time at which the run is to stop, if it
+        is.
+        """
         summary = self.summary
         if isinstance(self.marcher, Marcher):
-            departure = self.begun.departure
-            summary.amplification.watch(step, departure.of(step.end, self.marcher.base) / departure.scale)
+            summary.amplification.watch(step, self._departure(step) / self.begun.departure.scale)
         if summary.first_crossing is None:
             summary.first_crossing = crossing.first_in(step)
         stopped = summary.first_crossing if "crossing" in self.case.stop_at else None
+        if stopped is None and last:
+            stopped = step.end.time
         for row in self.recorder.during(step, summary.first_crossing, stopped):
             self._store(row, sink)
         sink.flush_if_due()
@@ -154,10 +170,28 @@ class Run:
         account, summary = self.recorder.account, self.summary
         summary.energy_residual, summary.energy_change = account.largest_residual, account.largest_change
         summary.cells = self.marcher.state.equations.mesh.cells
+        summary.extrema.first_area, summary.extrema.last_area = map(_area, (self.begun.state, self.marcher.state))
         outcome = outcome_attributes(summary.outcome, summary.totals)
         warnings = [self.warning] * bool(self.warning) + summary.warnings
         warned: dict[str, Attribute] = {"warning": "; ".join(warnings)} if warnings else {}
         sink.finish(outcome | summary.findings | summary.lobe_events | warned)
+
+
+def _logged(step: Step, cells: int) -> int:
+    """Tell of a step, and of the mesh if it is not the one of so many cells before."""
+    mesh = step.start.equations.mesh
+    if mesh.cells != cells:
+        points = step.start.equations.rule.m
+        LOG.info("t = %.6g: %d cells of %d Gauss points", step.start.time, mesh.cells, points)
+    words = "t = %.6g: step of %.3g, %d Newton iterations, error %.2g of what it may be"
+    LOG.debug(words, step.end.time, step.size, step.newton_iterations, step.error)
+    return mesh.cells
+
+
+def _area(state: State) -> float:
+    equations = state.equations
+    tangent = equations.tangent(state.unknowns[None])
+    return Quadrature(equations.mesh, equations.rule).area(state.position[:, None, :, :-1], tangent).item()
 
 
 def _marcher(case: Case, begun: Start, work: Work) -> Marcher | FixedMarcher:

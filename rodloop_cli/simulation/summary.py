@@ -60,10 +60,16 @@ class Summary:
         return self.energy_residual / self.energy_change if self.energy_change else 0.0
 
     @property
+    def residual_is_noise(self) -> bool:
+        """Whether the energy residual is that of rounded numbers, and large only against a loop that hardly moves."""
+        noise = max(ROUND_OFF, ROUND_OFF_SHARE * self.energies)
+        return self.lost_share > LARGE_SHARE and self.energy_residual <= noise
+
+    @property
     def warnings(self) -> list[str]:
         """What the run has shown of its own accuracy."""
         shown = []
-        if self.lost_share > LARGE_SHARE and self.energy_residual > max(ROUND_OFF, ROUND_OFF_SHARE * self.energies):
+        if self.lost_share > LARGE_SHARE and not self.residual_is_noise:
             shown.append(LOST.format(share=self.lost_share))
         if self.amplification.excess > SUSPICIOUS:
             shown.append(AMPLIFIED.format(excess=self.amplification.excess))
@@ -75,8 +81,9 @@ class Summary:
         found: dict[str, int | float] = {"largest_energy_residual": self.energy_residual}
         if self.first_crossing is not None:
             found["first_crossing_time"] = self.first_crossing
-        if self.extrema.minima:
-            found["first_area_minimum_time"], found["first_area_minimum"] = self.extrema.minima[0]
+        minima = self.extrema.prominent_minima()
+        if minima:
+            found["first_area_minimum_time"], found["first_area_minimum"] = minima[0]
         if self.extrema.period is not None:
             found["period"] = self.extrema.period
         return found

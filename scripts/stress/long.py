@@ -8,7 +8,7 @@ import numpy as np
 from rodloop_cli.case import Case
 from rodloop_cli.march.loop import Marcher
 from rodloop_cli.simulation import Run
-from rodloop_cli.simulation.events import distance
+from rodloop_cli.simulation.rest import distance
 from rodloop_cli.statics import relax
 from scripts.stress.cases import Keywords
 from scripts.stress.trial import Rows, relative_residual
