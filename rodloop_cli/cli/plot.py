@@ -25,7 +25,7 @@ def _complete_kind(_context: click.Context, _parameter: click.Parameter, incompl
 @click.option("--times", metavar="T1,T2,...", help="Draw the stored frames nearest to these times.")
 @click.option("--fps", type=float, default=25.0, show_default=True, help="Frames per second of a movie.")
 @click.option("--dpi", type=float, help="Pixels per inch (default: 150, movies 100).")
-@click.option("--size", metavar="WxH", help="Width and height in inches, as in 8x5.")
+@click.option("--size", metavar="WxH", help="Width and height in inches, as in 10x8.")
 def plot(
     path: str, kind: str | None, output: str | None, times: str | None, fps: float, dpi: float | None, size: str | None
 ) -> None:

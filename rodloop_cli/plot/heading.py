@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from rodloop_cli.case import Case, parse_case
 from rodloop_cli.case.wording import one_line
+from rodloop_cli.dataset.provenance import GOOD_ENDS
 from rodloop_cli.errors import CaseError
 from rodloop_cli.plot.data import times
 from rodloop_cli.plot.frames import crossing_time, sound
@@ -17,8 +18,6 @@ from rodloop_cli.plot.look import ALARM
 
 LETTERS_PER_INCH = 11
 """Of the bold title, with some room."""
-
-_GOOD_ENDS = ("reached t_end", "stopped at first crossing", "settled")
 
 
 def head(figure: Figure, dataset: xr.Dataset) -> None:
@@ -50,7 +49,7 @@ def trouble_of(dataset: xr.Dataset) -> str:
     outcome, reached = outcome_of(dataset), times(dataset)[-1]
     if not outcome:
         return f"UNFINISHED RUN: rows up to t = {reached:.4g}"
-    return "" if outcome.startswith(_GOOD_ENDS) else f"FAILED RUN, rows up to t = {reached:.4g}: {outcome}"
+    return "" if outcome.startswith(GOOD_ENDS) else f"FAILED RUN, rows up to t = {reached:.4g}: {outcome}"
 
 
 def crossing_of(dataset: xr.Dataset) -> str:

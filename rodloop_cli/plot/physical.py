@@ -7,14 +7,17 @@ from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.transforms import ScaledTranslation
 
 from rodloop_cli.case import parse_case
 from rodloop_cli.case.scales import Scales
 from rodloop_cli.errors import CaseError
+from rodloop_cli.plot.look import figure_of
 
-BELOW = -0.2
-"""Where the axis of milliseconds stands, of the height of the axes: clear of the label over it."""
+BELOW = 38.0
+"""How far below the axes that of milliseconds stands, in points: clear of the label over it."""
 
+POINTS_PER_INCH = 72
 MILLI = 1e3
 
 
@@ -26,7 +29,8 @@ def scales_of(dataset: xr.Dataset) -> Scales | None:
 def milliseconds(ax: Axes, dataset: xr.Dataset) -> None:
     """A second time axis, in ms, under the first, Eq. (8)."""
     if scales := scales_of(dataset):
-        second = ax.secondary_xaxis(BELOW, functions=_linear(MILLI * scales.time))
+        lowered = ax.transAxes + ScaledTranslation(0, -BELOW / POINTS_PER_INCH, figure_of(ax).dpi_scale_trans)
+        second = ax.secondary_xaxis(0, functions=_linear(MILLI * scales.time), transform=lowered)
         second.set_xlabel("time (ms)")
 
 

@@ -20,6 +20,7 @@ from rodloop_cli.case.wording import one_line
 from rodloop_cli.dataset import open_run
 from rodloop_cli.errors import OutputError
 from rodloop_cli.plot.data import closed_profile, place
+from rodloop_cli.plot.look import figure_of
 from rodloop_cli.plot.options import Options
 from rodloop_cli.plot.segments import pieces
 from rodloop_cli.plot.sweep_axes import cells, hatch, label_of, name_ticks, points_of, tick_of, ticked
@@ -138,11 +139,13 @@ def draw_phases(ax: Axes, dataset: xr.Dataset) -> None:
     colours = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.05, 0.95, len(levels) - 1)))
     drawn = ax.pcolormesh(*edges, lobes, cmap=colours, norm=BoundaryNorm(levels, colours.N), rasterized=True)
     not_crossed = (status != CROSSED) & ~np.ma.getmaskarray(lobes)
-    hatch(ax, edges, not_crossed)
+    some_crossed = bool((status == CROSSED).any())
+    if some_crossed:
+        hatch(ax, edges, not_crossed)
     named = [Patch(facecolor=tuple(drawn.cmap(drawn.norm(count))), label=str(count)) for count in counts]
     ax.legend(handles=named, title="lobes", loc="upper left", bbox_to_anchor=(1, 1), borderaxespad=0.3)
-    when = "the first crossing" if (status == CROSSED).any() else "the end"
-    ax.set_title(f"lobes at {when}" + ("; hatched: no crossing" if not_crossed.any() and "first" in when else ""))
+    when = "the first crossing" if some_crossed else "the end"
+    ax.set_title(f"lobes at {when}" + ("; hatched: no crossing" if some_crossed and not_crossed.any() else ""))
 
 
 def draw_final_shapes(ax: Axes, dataset: xr.Dataset, folder: Path) -> None:
@@ -175,13 +178,6 @@ def _draw_shape_at(ax: Axes, path: Path, x: float, y: float) -> None:
         for segment, points in pieces(run):
             part = slice(points.start, points.stop + 1)
             ax.plot(x + shape[0][part] - centre[0], y + shape[1][part] - centre[1], color=segment.colour, lw=1.2)
-
-
-def figure_of(ax: Axes) -> Figure:
-    """The figure that the axes are in."""
-    figure = ax.get_figure(root=True)
-    assert figure is not None
-    return figure
 
 
 # -- what is drawn

@@ -66,7 +66,14 @@ def name_ticks(ax: Axes, which: str, dataset: xr.Dataset, dim: str, chosen: list
     points = points_of(dataset, dim)
     axis = {"x": ax.xaxis, "y": ax.yaxis}[which]
     axis.set_ticks(range(len(chosen)), [tick_of(points[i]) for i in chosen], parse_math=False)
-    axis.set_label_text(label_of(dim) if dim in dataset.coords or f"{dim}_label" in dataset.coords else "")
+    axis.set_label_text(", ".join(map(label_of, _names_along(dataset, dim))))
+
+
+def _names_along(dataset: xr.Dataset, dim: str) -> list[str]:
+    """The key that an axis stands for, or those that vary along it together."""
+    if dim in dataset.coords or f"{dim}_label" in dataset.coords:
+        return [dim]
+    return [str(name) for name, coordinate in dataset.coords.items() if coordinate.dims == (dim,)]
 
 
 def cells(ax: Axes, dataset: xr.Dataset) -> tuple[Array, Array]:
