@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from rodloop_cli.critical.curves import Outcome
     from rodloop_cli.critical.loads import Search
 
+FARTHEST = 1000.0
+"""Pressure up to which eigenvalues stand out from round-off: near -5000 it looks like a loss of stability."""
+
 AXES = ("stiffness_ratio", "k", "alpha")
 
 
@@ -49,8 +52,10 @@ def critical(path: str | None, output: str | None, force: bool, as_json: bool, j
     FILE is a case, or a sweep file with a grid over stiffness_ratio, k and alpha. Options with several values, as in
     --stiffness-ratio 0.15:6:40 -k 0.47,0.5,0.53, make a grid too; they take the place of FILE's.
     """  # noqa: D301  \b is click's own mark
-    if options["p_max"] == 0:
-        raise click.BadParameter("must not be 0", param_hint="--p-max")
+    if not 0 < abs(options["p_max"]) <= FARTHEST:
+        raise click.BadParameter(f"must be between -{FARTHEST:g} and {FARTHEST:g}, and not 0", param_hint="--p-max")
+    if options["density_ratio"] is not None and not options["density_ratio"] > 0:
+        raise click.BadParameter("must be positive", param_hint="--density-ratio")
     what = asked(path, {name: options[name] for name in AXES})
 
     from rodloop_cli.critical.loads import Search
@@ -102,7 +107,11 @@ def _of_grid(what: Asked, search: Search, jobs: int, output: str | None, *, as_j
     written = _written(output, what, outcomes)
     failed = sum(isinstance(outcome, str) for outcome in outcomes)
     if as_json:
-        rods = [outcome if isinstance(outcome, str) else outcome.as_dict() for outcome in outcomes]
+        rods = [
+            {"stiffness_ratio": ratio, "k": k}
+            | ({"alpha": alpha, "error": outcome} if isinstance(outcome, str) else outcome.as_dict())
+            for (alpha, ratio, k), outcome in zip(what.grid.points, outcomes, strict=True)
+        ]
         click.echo(json.dumps({"rods": rods, "failed": failed, "path": written}))
     else:
         click.echo(written or "\n".join(as_table(what.grid, outcomes)))

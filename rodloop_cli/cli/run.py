@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rodloop_cli.cli.arguments import case_file, overrides
 from rodloop_cli.cli.settings import current_settings
+from rodloop_cli.errors import ConvergenceError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rodloop_cli.simulation import Run, Summary
 
 
@@ -31,12 +34,11 @@ def run(
     case = load_case(case_path, overrides)
     path = Path(output) if output else Path(Path(case_path).stem + ".nc")
 
-    from rodloop_cli.dataset.reader import holds_case
+    from rodloop_cli.dataset.reader import result_of
     from rodloop_cli.dataset.writer import check_target
 
-    if resume and not force and path.exists() and holds_case(path, case.sha256):
-        click.echo(f"{path} is finished already", err=True)
-        click.echo(path)
+    if resume and not force and path.exists() and (known := result_of(path, case.sha256)):
+        finished(path, known, as_json=as_json)
         return
     check_target(path, force=force)
 
@@ -51,8 +53,21 @@ def run(
     if not current_settings().quiet:
         click.echo("\n".join(told(summary)), err=True)
     warn(summary.warnings)
-    known = found(summary, path) | {"warnings": beforehand + summary.warnings}
-    click.echo(json.dumps(known) if as_json else str(path))
+    numbers = found(summary, path) | {"warnings": beforehand + summary.warnings}
+    click.echo(json.dumps(numbers) if as_json else str(path))
+
+
+def finished(path: Path, known: Mapping[str, Any], *, as_json: bool) -> None:
+    """Say what a result file holds that a run was to continue. Raises ConvergenceError if that run had failed."""
+    from rodloop_cli.dataset.provenance import GOOD_ENDS
+
+    if not known["outcome"].startswith(GOOD_ENDS):
+        raise ConvergenceError(f"{path} is of a run that failed: {known['outcome']} (--force starts it again)")
+    click.echo(f"{path} is finished already", err=True)
+    numbers = {name.removeprefix("total_"): value.item() for name, value in known.items() if hasattr(value, "item")}
+    warnings = [known["warning"]] if "warning" in known else []
+    told = {"path": str(path), "outcome": known["outcome"], **numbers, "warnings": warnings}
+    click.echo(json.dumps(told) if as_json else str(path))
 
 
 def warn(texts: list[str]) -> None:
@@ -70,15 +85,21 @@ def simulated(run: Run, path: Path, *, force: bool, resume: bool) -> Summary:
 
     recorder = run.recorder
     rows = resumed(path, run) if resume else 0
-    if resume and not rows and checkpoint_path(path).exists():
-        warn([f"{checkpoint_path(path)} is damaged, or of another case or version of rodloop: starting again"])
+    lost = not rows and checkpoint_path(path).exists()
     writer = RunWriter(
         path, s=recorder.s, segment=recorder.segment, attributes=run.attributes, force=force, resume=rows
     )
+    if lost:
+        why = "is damaged, or of another case or version of rodloop" if resume else "is not used without --resume"
+        warn([f"{checkpoint_path(path)} {why}: starting again"])
     run.revisit(writer.stored())
     keeper = Keeper(writer, run)
-    with writer, time_bar(run.case.t_end) as progress, signals_to(keeper):
-        summary = run.into(writer, progress, keeper)
+    try:
+        with writer, time_bar(run.case.t_end) as progress, signals_to(keeper):
+            summary = run.into(writer, progress, keeper)
+    except ConvergenceError as error:
+        keeper.done()  # its file is closed; there is nothing to continue
+        raise ConvergenceError(f"{error}\nthe rows before that are in {path}") from error
     keeper.done()
     return summary
 
@@ -87,12 +108,14 @@ def told(summary: Summary) -> list[str]:
     """The end of a run in words."""
     work = summary.work
     lines = [summary.outcome]
-    if summary.extrema.minima:
-        time, area = summary.extrema.minima[0]
+    minima = summary.extrema.prominent_minima()
+    if minima:
+        time, area = minima[0]
         lines.append(f"first area minimum {area:.6g} at t = {time:.6g}")
     if summary.extrema.period is not None:
         lines.append(f"period {summary.extrema.period:.6g} (between minima of the area)")
-    lines.append(f"energy residual {summary.energy_residual:.1e}, {summary.lost_share:.1e} of the largest change")
+    share = "of rounding" if summary.residual_is_noise else f"{summary.lost_share:.1e} of the largest change"
+    lines.append(f"energy residual {summary.energy_residual:.1e}, {share}")
     lines.append(
         f"{work.steps} steps ({work.rejected} rejected, {work.newton_failures} failed), {summary.cells} cells, "
         f"{summary.seconds:.2f} s"

@@ -25,6 +25,11 @@ class Grid:
     def shape(self) -> tuple[int, int, int]:
         return len(self.alpha), len(self.stiffness_ratio), len(self.k)
 
+    @property
+    def points(self) -> Iterator[tuple[float, float, float]]:
+        """α, stiffness ratio and k of every rod, k fastest."""
+        return product(self.alpha, self.stiffness_ratio, self.k)
+
     def __len__(self) -> int:
         return len(self.alpha) * len(self.stiffness_ratio) * len(self.k)
 
@@ -44,7 +49,7 @@ def over_grid(grid: Grid, search: Search, jobs: int = 2) -> Iterator[Outcome]:
     """The outcome of every rod, in the order of the grid, k fastest."""
     tasks = [
         (two_segments(ratio, k), replace(search, alpha=alpha))
-        for alpha, ratio, k in product(grid.alpha, grid.stiffness_ratio, grid.k)
+        for alpha, ratio, k in grid.points
     ]
     if jobs == 1:
         yield from map(_loads, tasks)

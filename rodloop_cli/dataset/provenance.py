@@ -16,6 +16,9 @@ CONVENTIONS = "CF-1.11"
 SOURCE = "rodloop"
 """The first word of the attribute `source`; the reader knows its own files by it."""
 
+GOOD_ENDS = ("reached t_end", "stopped at first crossing", "settled")
+"""How the outcome of a run begins that did not fail."""
+
 _PACKAGES = ("numpy", "scipy", "netCDF4")
 
 

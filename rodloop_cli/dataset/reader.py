@@ -11,7 +11,7 @@ import math
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import netCDF4
 import numpy as np
@@ -50,13 +50,14 @@ def open_run(path: str | os.PathLike[str], *, partial: bool = False) -> xr.Datas
     return _open(found)
 
 
-def holds_case(path: str | os.PathLike[str], sha256: str) -> bool:
-    """Whether ``path`` is the finished result of the case with this key."""
+def result_of(path: str | os.PathLike[str], sha256: str) -> dict[str, Any]:
+    """The attributes of the closed result of the case with this key; empty if ``path`` is not that."""
     try:
         with netCDF4.Dataset(path) as raw:
-            return bool(getattr(raw, "case_sha256", "") == sha256 and getattr(raw, "outcome", ""))
+            attributes = {name: raw.getncattr(name) for name in raw.ncattrs()}
     except _BROKEN:
-        return False
+        return {}
+    return attributes if attributes.get("case_sha256") == sha256 and attributes.get("outcome") else {}
 
 
 def _find(path: Path, *, partial: bool) -> Path:

@@ -41,6 +41,7 @@ class Newton:
         """
 
         def renew(iterate: Iterate, trusted: bool) -> Linearisation:
+            self._work.jacobians += 1
             self._work.factorizations += 1
             return self.linearised(equations, length, iterate.instant(self._middle, None if trusted else force))
 

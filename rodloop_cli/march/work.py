@@ -11,5 +11,6 @@ class Work:
     rejected: int = 0
     newton_failures: int = 0
     newton_iterations: int = 0
+    jacobians: int = 0
     factorizations: int = 0
     refinements: int = 0

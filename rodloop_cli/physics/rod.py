@@ -109,4 +109,9 @@ class Mesh:
 
 def cells_by_length(rod: Rod, cells: int) -> tuple[int, ...]:
     """Share out cells by the segments' lengths, each at least one (two nodes make the smallest loop)."""
-    return tuple(max(1 if len(rod.segments) > 1 else 2, round(cells * s.fraction)) for s in rod.segments)
+    shares = [cells * s.fraction for s in rod.segments]
+    counts = [max(1 if len(shares) > 1 else 2, int(share)) for share in shares]
+    most_wanting = sorted(range(len(shares)), key=lambda i: counts[i] - shares[i])
+    for i in most_wanting[: max(0, cells - sum(counts))]:
+        counts[i] += 1
+    return tuple(counts)

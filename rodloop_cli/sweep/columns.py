@@ -93,9 +93,9 @@ COLUMNS = (
     Column("newton_iterations", "Newton iterations", "i4"),
     Column("factorizations", "factorizations of the linear system", "i4"),
     Column("cells", "cells of the final mesh", "i4"),
-    Column("solver_seconds", "time spent in the time loop, in seconds", extras={"comment": "wall clock"}),
-    Column("cpu_seconds", "processor time from start to closed file, in seconds"),
-    Column("wall_seconds", "time from start to closed file, in seconds", extras={"comment": "wall clock"}),
+    Column("solver_seconds", "time spent in the time loop", extras={"units": "s", "comment": "wall clock"}),
+    Column("cpu_seconds", "processor time from start to closed file", extras={"units": "s"}),
+    Column("wall_seconds", "time from start to closed file", extras={"units": "s", "comment": "wall clock"}),
 )
 
 NAMES = frozenset(column.name for column in COLUMNS)

@@ -47,10 +47,14 @@ def _processes(count: int) -> Iterator[Crew]:
     slots.shutdown()
 
 
+def check_scheduler(kind: str | Executor, scheduler: str | None) -> None:
+    """Raises OutputError if dask is asked for and nobody said where it is."""
+    if kind == "dask" and not scheduler:
+        raise OutputError("--executor dask needs the address of a scheduler: --scheduler tcp://host:8786")
+
+
 @contextmanager
 def _dask(scheduler: str | None) -> Iterator[Crew]:
-    if not scheduler:
-        raise OutputError("--executor dask needs the address of a scheduler: --scheduler tcp://host:8786")
     try:
         from distributed import Client  # noqa: PLC0415
     except ModuleNotFoundError:

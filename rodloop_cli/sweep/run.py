@@ -12,7 +12,7 @@ from pathlib import Path
 from rodloop_cli.dataset.failures import writing
 from rodloop_cli.errors import Interrupted, OutputError, SweepError
 from rodloop_cli.sweep.conduct import Conductor, Tally
-from rodloop_cli.sweep.executors import crew
+from rodloop_cli.sweep.executors import check_scheduler, crew
 from rodloop_cli.sweep.file import read_sweep
 from rodloop_cli.sweep.gather import gather
 from rodloop_cli.sweep.ledger import Ledger
@@ -77,6 +77,7 @@ class Sweep:
 
         Raises SweepError if members failed and Interrupted on Ctrl-C, both with sweep.nc written.
         """
+        check_scheduler(executor, scheduler)
         self._make_folder()
         try:
             self._run(executor, jobs, scheduler, watcher)

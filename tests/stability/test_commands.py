@@ -65,7 +65,10 @@ def test_critical_of_a_case_by_the_sine_series(case_file, capsys):
         (["--stiffness-ratio", "0", "-k", "2"], "k: must be between 0 and 1 (got 2.0)"),
         (["-k", "x"], "must be a number, a list A,B,C or a range A:B:N (got x)"),
         (["--alpha", "1"], "alpha: must be positive and not 1 (got 1.0)"),
-        (["--p-max", "0"], "must not be 0"),
+        (["--p-max", "0"], "between -1000 and 1000, and not 0"),
+        (["--p-max", "nan"], "between -1000 and 1000, and not 0"),
+        (["--p-max", "-5000"], "between -1000 and 1000, and not 0"),
+        (["--density-ratio", "0"], "must be positive"),
         (["none.yaml"], "none.yaml: cannot be read"),
     ],
 )

@@ -138,10 +138,10 @@ def test_a_failed_member_is_a_row_and_is_tried_again(sweep_file, tmp_path, capsy
 def test_what_a_failed_member_has_computed_is_kept(sweep_file, tmp_path, capsys, monkeypatch):
     record = Run._record
 
-    def failing(run, step, *rest):
+    def failing(run, step, *rest, **more):
         if run.case.p == 8 and step.start.time > 0.005:
             raise ConvergenceError("no convergence at t = 0.005")
-        return record(run, step, *rest)
+        return record(run, step, *rest, **more)
 
     monkeypatch.setattr(Run, "_record", failing)
     folder, path = tmp_path / "out", sweep_file("p: [4, 8]", base="p: 4, dt: 0.002")
