@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
@@ -50,6 +51,8 @@ def _silenced() -> int:
 
 def _refusal(error: Exception) -> OutputError | None:
     """A file that the system does not give, its name being too long or its folder closed, is an answer and no bug."""
+    if isinstance(error, OSError) and error.errno == errno.ENOSPC and not error.filename:
+        return OutputError("what is printed cannot be written: no space left where it goes")
     if not isinstance(error, OSError) or not isinstance(error.filename, str) or not error.strerror:
         return None
     from rodloop_cli.case.wording import one_line

@@ -72,6 +72,9 @@ def sweep(
     if dry_run:
         _list(prepared)
         return
+    if prepared.replaced:
+        words = "results there are of other cases and will be replaced, each when the new one is complete"
+        click.echo(f"{folder}: {prepared.replaced} {words}", err=True)
     try:
         with _member_bar(prepared) as watcher:
             prepared.run(executor, jobs, scheduler, watcher)

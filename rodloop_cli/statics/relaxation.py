@@ -46,7 +46,10 @@ def relax(equations: BoxEquations, unknowns: Array) -> Array:
             return unknowns
         position = equations.shape(unknowns[None])[1]
         hold, before = max(WEAKEST_HOLD, hold * min(1.0, size)), size
-    raise ConvergenceError(f"no equilibrium found in {MOST_STEPS} steps at p = {equations.load.p:g}")
+    raise ConvergenceError(
+        f"no equilibrium found in {MOST_STEPS} steps at p = {equations.load.p:g}; "
+        "try a smaller contrast of stiffness, or more cells (N)"
+    )
 
 
 def _at_rest(size: float, before: float) -> bool:

@@ -40,6 +40,10 @@ class Ledger:
             return False
         return self._files.get(name) == _digest(key) or self._is_recovered(path, key)
 
+    def is_of_another_case(self, name: str, key: str) -> bool:
+        """Whether the result file of this name has other contents than a member would give it."""
+        return self._files.get(name, _digest(key)) != _digest(key) and (self._folder / f"{name}.nc").is_file()
+
     def _enter(self, row: Row) -> None:
         if not status_of(row).is_done:
             return

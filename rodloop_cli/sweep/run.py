@@ -36,6 +36,8 @@ class Sweep:
     folder: Path
     to_run: list[Member]
     is_whole: bool
+    replaced: int = 0
+    """Result files in the folder with the names of members, but of other cases."""
     tally: Tally = field(default_factory=Tally)
     failures: list[str] = field(default_factory=list)
 
@@ -61,10 +63,11 @@ class Sweep:
         ledger.refresh()
         fields = plan.sweep.keeps_fields
         left = [member for member in plan.members if not ledger.is_done(member.name, member.key, keeps_fields=fields)]
+        replaced = sum(ledger.is_of_another_case(member.name, member.key) for member in left) if fields else 0
         # A long member that starts last keeps one worker busy while the others have nothing left to do.
         left.sort(key=lambda member: -member.cost)
         tally = Tally(was_done=len(plan.members) - len(left))
-        return cls(plan, place, left, shard is None or shard.count == 1, tally)
+        return cls(plan, place, left, shard is None or shard.count == 1, replaced, tally)
 
     def run(
         self,

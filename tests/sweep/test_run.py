@@ -88,7 +88,8 @@ def test_a_file_that_is_gone_or_of_another_content_is_made_again(sweep_file, tmp
     capsys.readouterr()
     assert listed(path, folder, capsys) == ["p=4"]
     sweep(path, folder, "--set", "zeta_perp=1")
-    capsys.readouterr()
+    told = f"{folder}: 1 results there are of other cases and will be replaced, each when the new one is complete"
+    assert told in capsys.readouterr().err
     assert listed(path, folder, capsys) == ["p=8", "p=4"]
 
 
