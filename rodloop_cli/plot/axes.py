@@ -45,8 +45,11 @@ MOST_TICKS = 16
 QUARTERS = ("0", "π/2", "π", "3π/2", "2π")
 
 
-def time_axis(ax: Axes, dataset: xr.Dataset) -> None:
-    """Label the x axis as time, from the first stored to the last, and mark what is not physics."""
+def time_axis(ax: Axes, dataset: xr.Dataset, *, says_why: bool = True) -> None:
+    """Label the x axis as time, from the first stored to the last, and mark what is not physics.
+
+    ``says_why``: not where the axes are low and those above say it.
+    """
     t = times(dataset)
     if t[-1] > t[0]:
         ax.set_xlim(t[0], t[-1])
@@ -55,13 +58,17 @@ def time_axis(ax: Axes, dataset: xr.Dataset) -> None:
     ax.xaxis.set_major_locator(MaxNLocator(6))
     limit = crossing_time(dataset)
     if limit is not None and not sound(dataset).all():
-        veil(ax, max(limit, t[0]), t[-1], VEIL)
+        veil(ax, max(limit, t[0]), t[-1], VEIL, says_why=says_why)
 
 
-def veil(ax: Axes, start: float, end: float, facecolor: ColorType, zorder: float = 0.5) -> None:
+def veil(
+    ax: Axes, start: float, end: float, facecolor: ColorType, zorder: float = 0.5, *, says_why: bool = True
+) -> None:
     """Hatch the times after a self-crossing, and say why along the edge."""
     ax.axvspan(start, end, facecolor=facecolor, edgecolor="#bdbdbd", hatch="////", lw=0, zorder=zorder)
     ax.axvline(start, color=AFTER_CROSSING, lw=0.8, zorder=zorder)
+    if not says_why:
+        return
     words = ax.text(start, 0.5, f" {NOT_PHYSICAL} ", rotation=90, va="center", ha="left", size=8, color="#555555")
     words.set(transform=ax.get_xaxis_transform(), clip_on=True, in_layout=False, zorder=zorder + 2)
     words.set_bbox({"facecolor": "white", "alpha": 0.7, "lw": 0, "pad": 0.5})

@@ -44,7 +44,7 @@ def draw_energies(ax: Axes, dataset: xr.Dataset) -> None:
 def draw_residual(ax: Axes, dataset: xr.Dataset) -> None:
     """The sum of all energies minus its first value: zero in the exact motion, so the error that the run made."""
     plot_in_time(ax, dataset, values(dataset, "energy_residual"), color=INK, label="residual")
-    time_axis(ax, dataset)
+    time_axis(ax, dataset, says_why=False)
     ax.set_ylabel(r"sum $\Sigma\,/\,(B_1/R)$")
 
 

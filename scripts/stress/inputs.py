@@ -13,7 +13,8 @@ HOSTILE = (
     b"[" * 3000, b"{a: " * 500, b"9" * 5000, b"1e999", b"-.inf", b".nan", b"0x7f", b"12:30:45", b"? [a]\n: 1\n",
     b"--- \n", b"...\n", b"%YAML 9.9\n", "\u202e\u2028".encode(), b"\\UFFFFFFFF", b"<<: {p: 1}\n", b"t_end: 1\n",
 )  # fmt: skip
-SLOW = 2.0
+SLOW = 10.0
+"""Seconds that no input may take, on a machine however busy."""
 
 
 @dataclass
