@@ -40,7 +40,7 @@ def drawing() -> Iterator[None]:
         try:
             yield
         except UserWarning:
-            raise OutputError("--size: too small for what must be drawn (the overview needs 8x7)") from None
+            raise OutputError("--size: too small for what must be drawn; give more (an overview needs 8x7)") from None
 
 
 @contextlib.contextmanager

@@ -1,8 +1,8 @@
 """From a case to its result: the only place that composes all parts.
 
 `start` builds the state at t = 0, `run` follows the steps, `record` makes rows of them, `account` adds up energies,
-`events` finds what happens between rows, `amplification` the waves that grow out of errors; `resume` takes a run up
-again, `summary` says what it found and what it cost.
+`events` finds what happens between rows, `rest` when the motion has ended, `amplification` the waves that grow out of
+errors; `resume` takes a run up again, `summary` says what it found and what it cost.
 """
 
 from typing import TYPE_CHECKING

@@ -183,8 +183,10 @@ def _logged(step: Step, cells: int) -> int:
     if mesh.cells != cells:
         points = step.start.equations.rule.m
         LOG.info("t = %.6g: %d cells of %d Gauss points", step.start.time, mesh.cells, points)
-    words = "t = %.6g: step of %.3g, %d Newton iterations, error %.2g of what it may be"
-    LOG.debug(words, step.end.time, step.size, step.newton_iterations, step.error)
+    # bdf2 has no estimate.
+    error = f", error {step.error:.2g} of what it may be" if step.error else ""
+    end = step.start.time + step.size
+    LOG.debug("t = %.6g: step of %.3g, %d Newton iterations%s", end, step.size, step.newton_iterations, error)
     return mesh.cells
 
 

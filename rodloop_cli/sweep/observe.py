@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from rodloop_cli.dataset.provenance import GOOD_ENDS
 from rodloop_cli.dataset.rows import Row as Snapshot
 from rodloop_cli.dataset.rows import RowSink
 from rodloop_cli.dataset.variables import Attribute
@@ -15,11 +16,7 @@ from rodloop_cli.sweep.columns import NAMES, Row, Status
 from rodloop_cli.sweep.growth import Departure
 from rodloop_cli.sweep.ledger import ROW_ATTRIBUTE
 
-_ENDINGS = {
-    "reached t_end": Status.reached_end,
-    "stopped at first crossing": Status.crossed,
-    "settled": Status.settled,
-}
+_ENDINGS = dict(zip(GOOD_ENDS, (Status.reached_end, Status.crossed, Status.settled), strict=True))
 """How the outcomes of completed runs begin; all others are failures."""
 
 

@@ -94,13 +94,15 @@ def _point(keywords: Keywords, seconds: float) -> Trial:
 
 
 def draw_map(chosen: Map, trials: list[list[Trial]], path: Path) -> None:
-    """Energy residual, error over tolerance, and retries a step; a letter where the run did not end."""
-    figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
+    """Energy residual, error over tolerance if there is one, retries a step; a letter where the run did not end."""
     panels: dict[str, Callable[[Trial], float]] = {
         "log10 energy residual / exchanged": lambda t: float(np.log10(max(t.residual, 1e-12))),
         "log10 error / tol": lambda t: float(np.log10(max(t.error, 1e-4))),
         "failed or rejected steps / steps": lambda t: t.retries / max(1, t.work.get("steps", 0)),
     }
+    if "scheme" in chosen.base:  # fixed steps keep no tolerance
+        del panels["log10 error / tol"]
+    figure, axes = plt.subplots(1, len(panels), figsize=(13 / 3 * len(panels), 4.2), layout="constrained")
     for ax, (label, value) in zip(axes, panels.items(), strict=True):
         image = ax.imshow([[value(t) for t in row] for row in trials], origin="lower", aspect="auto")
         figure.colorbar(image, ax=ax)
